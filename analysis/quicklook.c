@@ -59,16 +59,24 @@ static struct range find_range(const struct wb_dataset *dataset)
 
 static void append_range(const struct wb_dataset *dataset, struct wb_text *text)
 {
+    const struct wb_test_info *const info = &dataset->info;
     const struct range range = find_range(dataset);
     if (dataset->n_rows == 0)
         return;
     wb_text_append(text, "cycles              %d\n", range.cycles);
     wb_text_append(text, "rows                %zu over %.1f s, %zu of them slack\n",
                    dataset->n_rows, range.duration, range.n_slack);
-    wb_text_append(text, "largest deflection  %.2f mm\n", range.deflection / WB_MM);
-    wb_text_append(
-        text, "largest force       %.2f mN above its value at zero deflection (tension %.2f mN)\n",
-        range.force / WB_MN, range.tension / WB_MN);
+    wb_text_append(text, "%-19s %.2f mm\n",
+                   info->kind == WB_TEST_TENSILE ? "largest elongation" : "largest deflection",
+                   range.deflection / WB_MM);
+    if (info->kind == WB_TEST_CANTILEVER && info->strand_length > 0.0)
+        wb_text_append(text,
+                       "largest force       %.2f mN above its value at zero deflection (tension "
+                       "%.2f mN)\n",
+                       range.force / WB_MN, range.tension / WB_MN);
+    else
+        wb_text_append(text, "largest force       %.4g N%s\n", range.force,
+                       info->is_follower ? ", normal to the wire at its end" : "");
 }
 
 static bool find_bow(const struct wb_json *document, double *bow_mm, double *uncertainty_mm)
@@ -141,9 +149,16 @@ enum wb_status wb_quicklook_summary(const struct wb_dataset *dataset, struct wb_
 {
     const struct wb_test_info *const info = &dataset->info;
     const struct wb_json *const document = dataset->document;
+    static const char *const lengths[WB_TEST_KINDS] = {
+        [WB_TEST_CANTILEVER] = "free length",
+        [WB_TEST_THREE_POINT] = "between the rollers",
+        [WB_TEST_TENSILE] = "gauge length",
+    };
     wb_text_append(text, "%s (%s)\n\n", text_or(document, "name", "dataset"), source_of(dataset));
-    wb_text_append(text, "wire                %s, sample %d, %g mm free length\n", info->wire,
-                   info->sample, info->length / WB_MM);
+    wb_text_append(text, "wire                %s", info->wire);
+    if (info->sample > 0)
+        wb_text_append(text, ", sample %d", info->sample);
+    wb_text_append(text, ", %g mm %s\n", info->length / WB_MM, lengths[info->kind]);
     append_range(dataset, text);
     append_residual(dataset, text);
     double bow, bow_uncertainty;

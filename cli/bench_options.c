@@ -41,8 +41,9 @@ static const struct wb_setting lost_steps_rows[] = {
 static const struct wb_setting_table lost_steps_table = {WB_SETTING_ROWS(lost_steps_rows)};
 
 static const struct wb_setting virtual_rows[] = {
-    {WB_ROW_INTEGER(wb_virtual_options, seed, "seed", 0, 1e9, 1),
-     WB_ROW_OPTION("seed", "N", "Seed of specimen, truth and noise")},
+    {WB_ROW_INTEGER(wb_virtual_options, seed, "seed", 0, 1e9, -1),
+     WB_ROW_OPTION("seed", "N", "Seed of specimen, truth and noise"),
+     .otherwise = "the specimen's sample"},
     {WB_ROW_LIST(wb_virtual_options, version, "natnet_version", version_table, has_version),
      WB_ROW_OPTION("natnet-version", "M.N", "Protocol of the motion capture, 2.5 to 4.4; M"),
      .otherwise = "3.0", .separator = '.'},
@@ -94,7 +95,7 @@ void wb_bench_options_default(struct wb_virtual_options *options)
 
 void wb_bench_options_complete(struct wb_virtual_options *options)
 {
-    options->bench.seed = (uint64_t)options->seed;
+    options->bench.seed = options->seed < 0 ? WB_BENCH_SEED_OF_SAMPLE : (uint64_t)options->seed;
     options->bench.natnet = (struct wb_natnet_version){(uint8_t)options->version.major,
                                                        (uint8_t)options->version.minor};
 }

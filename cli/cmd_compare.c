@@ -96,9 +96,15 @@ static void append_next(struct wb_text *text, const struct wb_compare *c)
                        "--within");
 }
 
-static void print(const struct options *o, const struct wb_compare *c)
+static void print(const struct options *o, const struct wb_compare *c,
+                  const struct wb_compared *page)
 {
     struct wb_finding finding = {.figure = o->common.output};
+    for (int i = 0; i < WB_COMPARE_SIDES; i++) {
+        const struct wb_properties *const p = page->properties[i];
+        printf("%c  %s: wire %s, %d specimen%s (%s)\n", "AB"[i], page -> names[i], p -> wire,
+               p -> n_samples, p -> n_samples == 1 ? "" : "s", wb_finding_properties_source(p));
+    }
     for (int k = 0; k < WB_COMPARE_QUANTITIES; k++) {
         const struct wb_compare_quantity *const q = &c->quantities[k];
         if (q->reason) {
@@ -150,11 +156,14 @@ static enum wb_status run(const struct options *o, struct wb_compare *compare,
         page.properties[i] = &properties[i];
         page.names[i] = name_of(o->common.inputs[i], o->common.inputs[1 - i]);
     }
+    if (strcmp(page.sha256[0], page.sha256[1]) == 0)
+        wb_warn("'%s' and '%s' have the same contents; expected two calibrations",
+                o->common.inputs[0], o->common.inputs[1]);
     WB_TRY(wb_compare_run(compare, page.properties, page.names, o->within));
     if (o->common.output)
         WB_TRY(wb_compared_write(&page, o->common.output, o->common.force));
     if (!o->common.json) {
-        print(o, compare);
+        print(o, compare, &page);
         return WB_OK;
     }
     return wb_command_print_json(wb_compare_json(compare, page.properties, page.names)) ==

@@ -12,6 +12,7 @@
 #include "base/config.h"
 #include "base/file.h"
 #include "cli/command.h"
+#include "daq/recording/index.h"
 #include "daq/take/take_reader.h"
 
 #define WB_LOG_DOMAIN "file"
@@ -27,9 +28,7 @@ static const struct {
 } rows[WB_FILE_KINDS] = {
     [WB_FILE_UNKNOWN] = {"unknown", "a file of unknown kind", ""},
     [WB_FILE_RECORDING] = {"recording", "a recording", "wirebench align %s -o DATASET"},
-    [WB_FILE_DATASET] = {"dataset", "a dataset",
-                         "wirebench calibrate %s -o PROPERTIES.yaml; of a tensile test: "
-                         "wirebench calibrate --tensile %s"},
+    [WB_FILE_DATASET] = {"dataset", "a dataset", "wirebench calibrate %s -o PROPERTIES.yaml"},
     [WB_FILE_PROPERTIES] = {"properties", "a properties file",
                             "wirebench validate %s DATASET...; wirebench export %s --to KIND"},
     [WB_FILE_RIG] = {"rig", "a rig file",
@@ -72,6 +71,14 @@ static const struct {
     [WB_FILE_REPORT_NUMBERS] = {"report_json", "the numbers of a report",
                                 "open report.html beside it; wirebench info --schema report "
                                 "describes its keys"},
+    [WB_FILE_MANIFEST] =
+        {"manifest", "the manifest of a report",
+         "wirebench report --check on its folder; wirebench info --schema manifest "
+         "describes its keys"},
+    [WB_FILE_VALIDATION] = {"validation", "the results of wirebench validate",
+                            "open its figures; scores.csv has the errors and bounds"},
+    [WB_FILE_CHECK_LOG] = {"check_log", "a log of load-cell checks",
+                           "wirebench stage RIG.yaml check MASS, which adds a line"},
     [WB_FILE_CARD] = {"card", "a card, the input of another program",
                       "read it with that program; wirebench does not read cards"},
     [WB_FILE_CHECKPOINT] = {"checkpoint", "a checkpoint of wirebench solve",
@@ -117,6 +124,8 @@ static enum wb_file_kind find_folder(const char *folder)
         return WB_FILE_DATASET;
     if (holds(folder, "report.json"))
         return WB_FILE_REPORT;
+    if (holds(folder, "scores.csv"))
+        return WB_FILE_VALIDATION;
     DIR *const listing = opendir(folder);
     for (const struct dirent *entry; listing && (entry = readdir(listing));) {
         char path[WB_PATH];
@@ -133,11 +142,14 @@ static enum wb_file_kind find_folder(const char *folder)
     return kind;
 }
 
-static bool is_part_of_dataset(const char *path)
+/* The kind of a file by the folder that holds it. */
+static enum wb_file_kind find_part(const char *path)
 {
     char folder[WB_PATH];
     wb_file_folder(folder, path);
-    return holds(folder, "dataset.json");
+    return holds(folder, "dataset.json") ? WB_FILE_PART_OF_DATASET
+           : holds(folder, "scores.csv") ? WB_FILE_VALIDATION
+                                         : WB_FILE_UNKNOWN;
 }
 
 /* --- YAML files, by their keys --- */
@@ -168,6 +180,7 @@ static enum wb_file_kind find_map(const struct wb_config_node *root)
         {WB_FILE_RIG, {"load_cell"}},
         {WB_FILE_RIG, {"mocap"}},
         {WB_FILE_REPORT_NUMBERS, {"tool", "limit_exceeded", "files"}},
+        {WB_FILE_MANIFEST, {"report", "inputs", "files"}},
         {WB_FILE_SERIES, {"series", "specimens"}},
         {WB_FILE_INDEX, {"recordings"}},
         {WB_FILE_INDEX, {"simulations"}},
@@ -206,7 +219,10 @@ static enum wb_file_kind find_yaml(const char *text, const char *path)
     struct wb_config *config;
     if (wb_config_parse(&config, text, path, &why) != WB_OK)
         return WB_FILE_UNKNOWN;
-    const enum wb_file_kind kind = find_map(wb_config_root(config));
+    /* The index of a series is a list. */
+    const enum wb_file_kind kind = strcmp(wb_file_name(path), WB_INDEX_FILE) == 0
+                                       ? WB_FILE_INDEX
+                                       : find_map(wb_config_root(config));
     wb_config_destroy(config);
     return kind;
 }
@@ -262,9 +278,11 @@ static enum wb_file_kind find_text(const char *text, const char *path)
         return WB_FILE_VTK;
     if (strstr(text, "<svg ") || strncmp(text, "<!DOCTYPE html", 14) == 0)
         return WB_FILE_FIGURE;
+    if (strncmp(text, "utc,known_mass_g,", 17) == 0)
+        return WB_FILE_CHECK_LOG;
     const bool is_yaml = wb_command_ends_in(path, ".yaml") || wb_command_ends_in(path, ".yml");
-    if (!is_yaml && is_part_of_dataset(path))
-        return WB_FILE_PART_OF_DATASET;
+    if (!is_yaml && find_part(path) != WB_FILE_UNKNOWN)
+        return find_part(path);
     if (!wb_command_ends_in(path, ".csv"))
         kind = find_yaml(text, path);
     return kind == WB_FILE_UNKNOWN && !is_yaml && is_table(text) ? WB_FILE_TABLE : kind;

@@ -32,6 +32,9 @@ enum wb_file_kind {
     WB_FILE_RECORDINGS,      /* a folder of recordings */
     WB_FILE_REPORT,          /* the folder of a report */
     WB_FILE_REPORT_NUMBERS,  /* report.json */
+    WB_FILE_MANIFEST,        /* of a report */
+    WB_FILE_VALIDATION,      /* the folder of `validate -o`, or a file in it */
+    WB_FILE_CHECK_LOG,       /* of load-cell checks */
     WB_FILE_CARD,
     WB_FILE_CHECKPOINT,
     WB_FILE_HDF5,

@@ -93,6 +93,13 @@ const char *wb_finding_source(const struct wb_test_info *info)
     return info->is_virtual ? "virtual rig" : info->is_simulation ? "simulation" : "measured";
 }
 
+const char *wb_finding_properties_source(const struct wb_properties *properties)
+{
+    return properties->is_virtual      ? "virtual rig"
+           : properties->is_simulation ? "simulation"
+                                       : "measured";
+}
+
 void wb_finding_append_validate(struct wb_text *text, const char *output, const char *wire,
                                 const char *another)
 {

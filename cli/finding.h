@@ -27,8 +27,11 @@ void wb_finding_write(FILE *out, struct wb_finding *finding); /* the same, on an
 void wb_finding_append_quantity(struct wb_text *text, const struct wb_properties *properties,
                                 enum wb_quantity_id id, int k);
 
-/* The origin of tests: "measured", "virtual rig" or "simulation". */
+/* The origin of tests, or of the tests of a calibration: "measured", "virtual rig" or "simulation".
+ */
 const char *wb_finding_source(const struct wb_test_info *info);
+
+const char *wb_finding_properties_source(const struct wb_properties *properties);
 
 /* Appends the next command after a calibration: `wirebench validate OUTPUT DATASET...` with tests
  * of another length or span (`another`), or, where no properties were written (NULL), how to keep

@@ -5,6 +5,7 @@
 #include "analysis/calibration/properties/properties.h"
 #include "analysis/quicklook.h"
 #include "base/config.h"
+#include "cli/finding.h"
 #include "cli/info.h"
 #include "cli/print.h"
 
@@ -14,22 +15,31 @@ static enum wb_status print_properties(const char *path, struct wb_json *root)
 {
     static struct wb_properties properties;
     WB_TRY(wb_properties_read(path, &properties));
-    const char *const source = properties.is_virtual      ? "virtual rig"
-                               : properties.is_simulation ? "simulation"
-                                                          : "measured";
     if (root) {
         wb_json_set_text(root, "wire", properties.wire);
         wb_json_set_boolean(root, "virtual_rig", properties.is_virtual);
         wb_json_set_boolean(root, "simulation", properties.is_simulation);
         return WB_OK;
     }
-    printf("wire %s (%s), %d specimen%s\n", properties.wire, source, properties.n_samples,
+    printf("wire %s (%s), %d specimen%s\n", properties.wire,
+           wb_finding_properties_source(&properties), properties.n_samples,
            properties.n_samples == 1 ? "" : "s");
     wb_print_quantities(&properties, "candidates");
     return WB_OK;
 }
 
-static enum wb_status print_dataset(const char *path, struct wb_json *root)
+/* Of what a calibration of cantilevers and three-point tests cannot use. */
+static void append_next_of(struct wb_text *next, const struct wb_test_info *info, const char *path)
+{
+    if (info->kind == WB_TEST_TENSILE)
+        wb_text_append(next, "wirebench calibrate --tensile ");
+    else if (info->is_follower)
+        wb_text_append(next, "wirebench validate PROPERTIES.yaml ");
+    if (next->length > 0)
+        wb_text_append_quoted(next, path);
+}
+
+static enum wb_status print_dataset(const char *path, struct wb_json *root, struct wb_text *next)
 {
     const unsigned tests = WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT) |
                            WB_TEST_BIT(WB_TEST_TENSILE);
@@ -43,34 +53,24 @@ static enum wb_status print_dataset(const char *path, struct wb_json *root)
         status = wb_quicklook_summary(&dataset, &text);
     if (status == WB_OK && !root)
         printf("%s\n", wb_text_string(&text));
+    append_next_of(next, &dataset.info, path);
     wb_text_release(&text);
     wb_dataset_release(&dataset);
     return status;
 }
 
-static enum wb_status print_contents(enum wb_file_kind kind, const char *path, struct wb_json *root)
+/* `next` receives what to do with the file where this depends on its contents. */
+static enum wb_status print_contents(enum wb_file_kind kind, const char *path, struct wb_json *root,
+                                     struct wb_text *next)
 {
     switch (kind) {
     case WB_FILE_PROPERTIES:
         return print_properties(path, root);
     case WB_FILE_DATASET:
-        return print_dataset(path, root);
+        return print_dataset(path, root, next);
     default:
         return WB_OK;
     }
-}
-
-static int print_json(enum wb_file_kind kind, const char *path, const char *next)
-{
-    struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "file", path);
-    wb_json_set_text(root, "kind", wb_file_kind_key(kind));
-    wb_json_set_text(root, "next", next);
-    if (print_contents(kind, path, root) != WB_OK) {
-        wb_json_destroy(root);
-        return WB_EXIT_FAILED;
-    }
-    return wb_command_print_json(root);
 }
 
 /* Whether it is a YAML file that cannot be parsed, which is reported. */
@@ -102,14 +102,24 @@ int wb_info_file(const struct wb_info_options *options, enum wb_file_kind kind)
                  path);
         return WB_EXIT_FAILED;
     }
-    wb_file_kind_append_next(&next, kind, path);
-    if (options->common.json) {
-        code = print_json(kind, path, wb_text_string(&next));
+    struct wb_json *const root = options->common.json ? wb_json_create() : NULL;
+    if (root) {
+        wb_json_set_text(root, "file", path);
+        wb_json_set_text(root, "kind", wb_file_kind_key(kind));
     } else {
         printf("%s: %s\n", path, wb_file_kind_name(kind));
-        code = wb_command_exit(print_contents(kind, path, NULL));
-        if (code == WB_EXIT_OK)
-            printf("next    %s\n", wb_text_string(&next));
+    }
+    const enum wb_status status = print_contents(kind, path, root, &next);
+    if (next.length == 0)
+        wb_file_kind_append_next(&next, kind, path);
+    if (status != WB_OK) {
+        wb_json_destroy(root);
+        code = WB_EXIT_FAILED;
+    } else if (root) {
+        wb_json_set_text(root, "next", wb_text_string(&next));
+        code = wb_command_print_json(root);
+    } else {
+        printf("next    %s\n", wb_text_string(&next));
     }
     wb_text_release(&next);
     return code;

@@ -385,7 +385,8 @@ static enum wb_status test_sample(struct run *run, int number, int sample, const
     struct wb_live_frame_point *const earlier = find_earlier(&run->results, &run->views.n_earlier);
     run->views.earlier = earlier;
     struct wb_virtual_test *const virtual = run->request->virtual;
-    if (virtual) /* the seed draws the specimen and its noise */
+    /* The seed draws the specimen and its noise. */
+    if (virtual && virtual->settings.seed != WB_BENCH_SEED_OF_SAMPLE)
         virtual->settings.seed++;
     const enum wb_status status = wb_record_test_run(&test, &run->views, virtual, &result, &code);
     free(earlier);

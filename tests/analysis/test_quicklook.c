@@ -31,6 +31,7 @@ static void fill(struct wb_dataset *dataset)
     strcpy(dataset->info.wire, "type <2>");
     dataset->info.sample = 2;
     dataset->info.length = 0.085;
+    dataset->info.strand_length = 0.76;
     dataset->info.outer_diameter = 1.25e-3;
     dataset->info.is_virtual = true;
     wb_json_set_text(dataset->document, "name", "a&b.wbr");

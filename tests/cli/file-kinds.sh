@@ -51,6 +51,14 @@ kind recordings "$root/recordings"
 kind index "$root/recordings/index.yaml" "$root/simulations/index.yaml"
 printf '{"tool": {"name": "wirebench report"}, "limit_exceeded": false, "files": []}\n' >report.json
 kind report_json report.json
+printf '{"report": "1", "inputs": [], "files": []}\n' >manifest.json
+kind manifest manifest.json
+mkdir series && printf -- '- file: a.wbr\n  sample: 1\n' >series/index.yaml
+kind index series/index.yaml
+printf 'utc,known_mass_g,read_mass_g\n' >rig.checks.csv
+kind check_log rig.checks.csv
+mkdir checked && printf 'wire,length_mm\n' | tee checked/scores.csv >checked/type1.csv
+kind validation checked checked/scores.csv checked/type1.csv
 kind recording "$root/recordings/type1-L85-1.wbr.zst"
 kind card "$root"/docs/cards/type1.{abaqus.inp,calculix.inp,csv,json,mujoco.xml}
 kind figure "$root"/docs/images/*.png
@@ -81,6 +89,12 @@ done
 "$wirebench" info 'a set' >said || fail 'info of a dataset'
 grep -qF "next    wirebench calibrate 'a set' -o PROPERTIES.yaml" said || fail "dataset: $(cat said)"
 
+"$wirebench" info "$fixtures"/formats/0.1.0/tensile >said || fail 'info of a tensile test'
+grep -q '^next    wirebench calibrate --tensile ' said && grep -q 'gauge length$' said ||
+    fail "tensile test: $(cat said)"
+"$wirebench" info "$root"/simulations/follower-8awg-1d >said || fail 'info of a follower test'
+grep -q '^next    wirebench validate ' said || fail "follower test: $(cat said)"
+
 # What is unknown, missing or broken.
 echo text >notes.txt
 printf 'root:x:0:0\ndaemon:x:1:1\nbin:x:2:2\nsys:x:3:3\nsync:x:4:65534\n' >users
@@ -97,6 +111,8 @@ properties=$root/docs/cards/type1.yaml rig=$fixtures/rigs/paper.yaml
 recording=$root/recordings/type1-L85-1.wbr.zst specimen=$fixtures/specimens/type1-L85-1.yaml
 rejects 'is a properties file, expected a dataset; for this file: wirebench validate' calibrate "$properties"
 rejects 'is a recording, expected a dataset; for this file: wirebench align' calibrate --tensile "$recording"
+rejects "'notes.txt' is of unknown kind, expected a dataset" calibrate notes.txt
+rejects "'none' does not exist, expected a dataset" validate "$properties" none
 rejects 'is a properties file, expected a recording' align "$properties" -o x
 rejects 'is a rig file, expected a recording' clock "$rig"
 rejects 'is a rig file, expected a recording' quicklook "$rig" -o x
