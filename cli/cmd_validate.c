@@ -366,6 +366,21 @@ static void print_group(const struct wb_validate_result *r)
                r->cycles.clamp_curvature);
 }
 
+static void append_found_three_point(struct wb_text *text, const struct wb_validate_three_point *r)
+{
+    wb_text_append(text,
+                   "%s in three-point bending, span %g mm (%s, %d test%s): RMS error of the "
+                   "loading %.2g %%",
+                   r->info.wire, r->info.length / WB_MM, wb_finding_source(&r->info), r->n_used,
+                   r->n_used == 1 ? "" : "s", r->loading.rms / WB_PERCENT);
+    if (r->n_unloading > 0)
+        wb_text_append(text, ", of the unloading %.2g %%", r->unloading.rms / WB_PERCENT);
+    wb_text_append(text, " of F_max");
+    if (isfinite(r->residual_measured))
+        wb_text_append(text, "; residual deflection %.3f mm measured, %.3f mm predicted",
+                       r->residual_measured / WB_MM, r->residual_computed / WB_MM);
+}
+
 static void append_found(struct wb_text *text, const struct wb_validate_result *r)
 {
     wb_text_append(text, "%s at L = %g mm (%s, %d specimen%s): RMS error of the loading %.2g %%",
@@ -394,7 +409,13 @@ static bool is_calibrated_on(const struct wb_properties *properties, const char 
     return false;
 }
 
-static void append_verdict(struct wb_text *text, const struct wb_validate_result *r)
+static enum wb_validate_verdict verdict_of(const struct group *g)
+{
+    return g->is_three_point ? wb_validate_three_point_verdict(&g->three_point)
+                             : wb_validate_bounds_verdict(&g->result);
+}
+
+static void append_verdict(struct wb_text *text, const struct group *g)
 {
     static const char *const verdicts[] = {
         [WB_VALIDATE_PREDICTED] = "yes: within the scatter of specimens",
@@ -404,10 +425,14 @@ static void append_verdict(struct wb_text *text, const struct wb_validate_result
         [WB_VALIDATE_BEYOND] = "with care: bent beyond the range of the properties",
         [WB_VALIDATE_NOT_CONVERGED] = "no: the beam did not converge up to the largest deflection",
     };
-    const enum wb_validate_verdict verdict = wb_validate_bounds_verdict(r);
+    const enum wb_validate_verdict verdict = verdict_of(g);
     wb_text_append(text, "%s", verdicts[verdict]);
-    if (verdict == WB_VALIDATE_NOT_PREDICTED)
-        wb_validate_bounds_append(text, r);
+    if (verdict == WB_VALIDATE_NOT_PREDICTED && g->is_three_point)
+        wb_text_append(text, "loading %.2g %%, bound %.2g %%",
+                       g->three_point.loading.rms / WB_PERCENT,
+                       g->three_point.expected.rms_95 / WB_PERCENT);
+    else if (verdict == WB_VALIDATE_NOT_PREDICTED)
+        wb_validate_bounds_append(text, &g->result);
 }
 
 /* For the worst verdict of the groups. */
@@ -431,34 +456,35 @@ static void append_export(struct wb_text *text, const char *properties)
     wb_text_append(text, " --to table -o CARD.json, for other programs");
 }
 
-/* Of cantilevers; tests of three-point bending have their own verdict. */
 static void print_finding(const struct options *o, const struct wb_properties *properties,
                           const struct groups *groups, const char *figure)
 {
     struct wb_finding finding = {.figure = figure && figure[0] ? figure : NULL};
     const int n_all = o->common.n - 1;
-    int n_same = 0, n = 0;
+    int n_same = 0;
     enum wb_validate_verdict worst = WB_VALIDATE_PREDICTED;
     for (int i = 1; i <= n_all; i++)
         n_same += is_calibrated_on(properties, o->common.inputs[i]);
     for (int i = 0; i < groups->n; i++) {
         const struct group *const g = &groups->items[i];
-        if (g->is_three_point)
-            continue;
-        if (n > 0)
+        const enum wb_validate_verdict verdict = verdict_of(g);
+        if (i > 0)
             wb_text_append(&finding.found, "; ");
-        if (n++ > 0 && n_same < n_all)
-            wb_text_append(&finding.trust, "; ");
-        append_found(&finding.found, &g->result);
-        if (n_same < n_all && groups->n > 1)
-            wb_text_append(&finding.trust, "L = %g mm: ", g->result.info.length / WB_MM);
-        if (n_same < n_all)
-            append_verdict(&finding.trust, &g->result);
-        const enum wb_validate_verdict verdict = wb_validate_bounds_verdict(&g->result);
+        if (g->is_three_point)
+            append_found_three_point(&finding.found, &g->three_point);
+        else
+            append_found(&finding.found, &g->result);
         worst = verdict > worst || worst == WB_VALIDATE_PREDICTED ? verdict : worst;
+        if (n_same == n_all)
+            continue;
+        if (i > 0)
+            wb_text_append(&finding.trust, "; ");
+        if (groups->n > 1)
+            wb_text_append(&finding.trust, "%s = %g mm: ", g->is_three_point ? "span" : "L",
+                           (g->is_three_point ? g->three_point.info : g->result.info).length /
+                               WB_MM);
+        append_verdict(&finding.trust, g);
     }
-    if (n == 0)
-        return;
     if (n_same == n_all)
         wb_text_append(&finding.trust, "no: the calibration used these tests, so they do not test "
                                        "the law");
@@ -467,7 +493,7 @@ static void print_finding(const struct options *o, const struct wb_properties *p
                        "; %d of these %d tests were used by the calibration and do not count",
                        n_same, n_all);
     if (n_same == n_all)
-        wb_text_append(&finding.next, "validate with specimens of another length");
+        wb_text_append(&finding.next, "validate with specimens of another length or span");
     else if (worst != WB_VALIDATE_PREDICTED)
         wb_text_append(&finding.next, "%s", next_of(worst));
     else

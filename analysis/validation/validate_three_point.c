@@ -495,6 +495,15 @@ enum wb_status wb_validate_three_point_run(struct wb_validate_three_point *resul
     return status;
 }
 
+enum wb_validate_verdict wb_validate_three_point_verdict(const struct wb_validate_three_point *r)
+{
+    if (r->is_beyond)
+        return WB_VALIDATE_BEYOND;
+    if (!isfinite(r->expected.rms_95))
+        return WB_VALIDATE_UNDECIDED;
+    return r->loading.rms > r->expected.rms_95 ? WB_VALIDATE_NOT_PREDICTED : WB_VALIDATE_PREDICTED;
+}
+
 void wb_validate_three_point_release(struct wb_validate_three_point *result)
 {
     for (int i = 0; result->tests && i < result->n_tests; i++)

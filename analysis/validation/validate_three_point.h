@@ -20,6 +20,7 @@
 #include "analysis/calibration/three_point/three_point_calibrate.h"
 #include "analysis/dataset/dataset.h"
 #include "analysis/validation/expected.h"
+#include "analysis/validation/validate_bounds.h"
 #include "base/json.h"
 #include "base/reason.h"
 #include "base/status.h"
@@ -88,6 +89,10 @@ WB_MUST_CHECK enum wb_status wb_validate_three_point_run(
     struct wb_validate_three_point *result, const struct wb_properties *properties,
     const struct wb_dataset *const *datasets, int n,
     const struct wb_three_point_calibrate_settings *settings, struct wb_reason *why);
+
+/* The verdict on the loading, by the error that scatter between specimens explains. */
+enum wb_validate_verdict
+wb_validate_three_point_verdict(const struct wb_validate_three_point *result);
 
 /* Writes the mean curves as CSV: deflection_mm,measured_N,deviation_N,computed_N,error,elastic_N;
  * the last column is absent for the unloading. Replaces an existing file by an atomic rename. */

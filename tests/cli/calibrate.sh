@@ -291,6 +291,13 @@ PYTHON
 expect 0 'unloading      RMS' "$wirebench" validate bent.yaml bent-2 -o bent-scores
 grep -q 'parts,20,unloading,' bent-scores/scores.csv || fail 'no score of the unloading'
 [ -s bent-scores/parts-L20-three-point-unloading.csv ] || fail 'no table of the unloading'
+"$wirebench" solve bending3p ./parts.yaml --span-mm 24 --deflection-mm 3 --points 80 --cycles 1 \
+    --roller-radius-mm 2 --nose-radius-mm 2 --roller-friction 0.2 -o bent-24 >/dev/null || fail 'solve bending3p'
+"$wirebench" validate bent.yaml bent-1 bent-24 >said 2>&1 || fail 'validate two spans'
+for line in '^found   parts in three-point bending, span 20 mm (simulation, 1 test): RMS error' \
+    '^trust   span = 20 mm: undecided.*; 1 of these 2 tests' '^next '; do
+    grep -q "$line" said || fail "validate: no line '$line': $(cat said)"
+done
 expect 0 '"kind": "three-point"' "$wirebench" validate bent.yaml bent-2 --json
 
 # The compliance of a machine: from a stiff bar, and not from a soft one.
