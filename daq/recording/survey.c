@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -265,144 +266,117 @@ double wb_survey_seconds(int64_t from_ns, int64_t to_ns)
 
 /* --- problems --- */
 
-#define FILE_PROBLEMS 11
-#define ROW_PROBLEMS 5
-#define STREAM_PROBLEMS 6
+/* Counts the problems in a fixed order, and describes one of them. */
+struct problems {
+    int n, wanted; /* problems so far; number of the described one, from 0 */
+    char *text;
+    size_t size;
+};
+
+static void note(struct problems *problems, bool is_problem, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static void note(struct problems *problems, bool is_problem, const char *format, ...)
+{
+    va_list arguments;
+    if (!is_problem || problems->n++ != problems->wanted)
+        return;
+    va_start(arguments, format);
+    vsnprintf(problems->text, problems->size, format, arguments);
+    va_end(arguments);
+}
 
 static const char *plural(uint64_t n)
 {
     return n == 1 ? "" : "s";
 }
 
-static bool stream_problem(const struct wb_survey *survey, int which, char *text, size_t size)
+static const char *rows_are(uint64_t n)
 {
-    const struct wb_survey_stream *const stream = &survey->streams[which / STREAM_PROBLEMS];
-    const char *role = wb_role_name(stream->role);
-    switch (which % STREAM_PROBLEMS) {
-    case 0:
-        snprintf(text, size, "%s stream %d: no data received", role, stream->id);
-        return stream->chunks == 0 && !survey->cut_short;
-    case 1:
-        snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s damaged (CRC-32)", role, stream->id,
-                 stream->damaged, plural(stream->damaged));
-        return stream->damaged > 0 && !survey->check.is_protected; /* else see row_problem() */
-    case 2:
-        snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s missing in %" PRIu64 " place%s",
-                 role, stream->id, stream->missing, plural(stream->missing), stream->gaps,
-                 plural(stream->gaps));
-        return stream->missing > 0;
-    case 3:
-        snprintf(text, size, "%s stream %d: silent for %.2f s, the limit is %.2f s", role,
-                 stream->id, wb_seconds_from_ns(stream->alone_silent_ns),
-                 wb_seconds_from_ns(survey->silence_limit_ns));
-        return survey->silence_limit_ns > 0 && stream->alone_silent_ns > survey->silence_limit_ns;
-    case 4:
-        snprintf(text, size,
-                 "%s stream %d: %.2g %% of its %s never came: %" PRIu64 " in %" PRIu64
-                 " place%s, the longest of %.3g s",
-                 role, stream->id, wb_loss_share(&stream->loss) / WB_PERCENT,
-                 stream->role == WB_ROLE_MOCAP ? "frames" : "lines", stream->loss.missing,
-                 stream->loss.gaps, plural(stream->loss.gaps), stream->loss.longest_gap);
-        return stream->is_losing;
-    default:
-        snprintf(text, size, "%s stream %d: %" PRIu64 " chunk%s repeated or out of order", role,
-                 stream->id, stream->repeated, plural(stream->repeated));
-        return stream->repeated > 0;
-    }
+    return n == 1 ? "row is" : "rows are";
 }
 
-static bool row_problem(const struct wb_survey *survey, int which, char *text, size_t size)
+static void note_file(struct problems *p, const struct wb_survey *survey)
 {
-    const struct wb_recording_check *const check = &survey->check;
-    if (!check->is_protected)
-        return false;
-    switch (which) {
-    case 0:
-        snprintf(text, size, "%" PRIu64 " row%s damaged (CRC-32): %s", check->damaged,
-                 check->damaged == 1 ? " is" : "s are", check->damaged_where);
-        return check->damaged > 0;
-    case 1:
-        snprintf(text, size, "%" PRIu64 " row%s missing: %s", check->lost,
-                 check->lost == 1 ? " is" : "s are", check->lost_where);
-        return check->lost > 0;
-    case 2:
-        snprintf(text, size, "%" PRIu64 " row%s not in the order of writing: %s", check->displaced,
-                 check->displaced == 1 ? " is" : "s are", check->displaced_where);
-        return check->displaced > 0;
-    case 3:
-        snprintf(text, size, "%" PRIu64 " row%s after the digest that closing wrote",
-                 check->after_digest, check->after_digest == 1 ? " is" : "s are");
-        return check->after_digest > 0;
-    default:
-        snprintf(text, size, "the digest of all rows differs from that written on closing");
-        return check->is_closed && !check->digest_fits && check->damaged == 0 && check->lost == 0 &&
-               check->displaced == 0;
-    }
+    note(p, !survey->closed, "%s",
+         survey->cut_short ? "the file is truncated: use the original file"
+                           : "it was not closed properly: a crash, a power cut, a full disk, or it "
+                             "is still being recorded");
+    /* Damaged rows are listed separately. */
+    note(p,
+         survey->broken && !survey->cut_short &&
+             (survey->check.is_broken || survey->check.damaged == 0),
+         "the database is damaged: not all rows can be read");
+    note(p, survey->n_streams == 0, "the recording declares no stream");
+    note(p, survey->undeclared > 0, "%" PRIu64 " chunk%s of undeclared streams", survey->undeclared,
+         plural(survey->undeclared));
+    note(p, survey->drop_events > 0 || survey->dropped_chunks > 0,
+         "drops during recording: %" PRIu64 " (%" PRId64 " chunk%s)", survey->drop_events,
+         survey->dropped_chunks < 0 ? 0 : survey->dropped_chunks,
+         survey->dropped_chunks == 1 ? "" : "s");
+    note(p, survey->lost_events > 0,
+         "a stream was silent for too long %" PRIu64 " time%s during recording",
+         survey->lost_events, plural(survey->lost_events));
+    note(p, survey->refused_events > 0,
+         "lines that could not be decoded were received during the test (%" PRIu64 " event%s)",
+         survey->refused_events, plural(survey->refused_events));
+    note(p, !survey->has_rig, "the rig file is missing: nothing can be decoded");
+    note(p, survey->log_problem[0] != '\0', "%s", survey->log_problem);
+    note(p, survey->is_recovered && survey->recovered_missing[0],
+         "recovered from a damaged file; missing: %s", survey->recovered_missing);
+    note(p, !survey->has_specimen, "the specimen file is missing: the recording cannot be aligned");
 }
 
-static bool file_problem(const struct wb_survey *survey, int which, char *text, size_t size)
+static void note_rows(struct problems *p, const struct wb_recording_check *check)
 {
-    switch (which) {
-    case 0:
-        snprintf(text, size, "%s",
-                 survey->cut_short ? "the file is truncated: use the original file"
-                                   : "it was not closed properly: a crash, a power cut, a full "
-                                     "disk, or it is still being recorded");
-        return !survey->closed;
-    case 1:
-        snprintf(text, size, "the database is damaged: not all rows can be read");
-        /* Damaged rows are listed separately. */
-        return survey->broken && !survey->cut_short &&
-               (survey->check.is_broken || survey->check.damaged == 0);
-    case 2:
-        snprintf(text, size, "the recording declares no stream");
-        return survey->n_streams == 0;
-    case 3:
-        snprintf(text, size, "%" PRIu64 " chunk%s of undeclared streams", survey->undeclared,
-                 plural(survey->undeclared));
-        return survey->undeclared > 0;
-    case 4:
-        snprintf(text, size, "drops during recording: %" PRIu64 " (%" PRId64 " chunk%s)",
-                 survey->drop_events, survey->dropped_chunks < 0 ? 0 : survey->dropped_chunks,
-                 survey->dropped_chunks == 1 ? "" : "s");
-        return survey->drop_events > 0 || survey->dropped_chunks > 0;
-    case 5:
-        snprintf(text, size, "a stream was silent for too long %" PRIu64 " time%s during recording",
-                 survey->lost_events, plural(survey->lost_events));
-        return survey->lost_events > 0;
-    case 6:
-        snprintf(text, size,
-                 "lines that could not be decoded were received during the test (%" PRIu64
-                 " event%s)",
-                 survey->refused_events, plural(survey->refused_events));
-        return survey->refused_events > 0;
-    case 7:
-        snprintf(text, size, "the rig file is missing: nothing can be decoded");
-        return !survey->has_rig;
-    case 8:
-        snprintf(text, size, "%s", survey->log_problem);
-        return survey->log_problem[0] != '\0';
-    case 9:
-        snprintf(text, size, "recovered from a damaged file; missing: %s",
-                 survey->recovered_missing);
-        return survey->is_recovered && survey->recovered_missing[0];
-    default:
-        snprintf(text, size, "the specimen file is missing: the recording cannot be aligned");
-        return !survey->has_specimen;
-    }
+    note(p, check->damaged > 0, "%" PRIu64 " %s damaged (CRC-32): %s", check->damaged,
+         rows_are(check->damaged), check->damaged_where);
+    note(p, check->lost > 0, "%" PRIu64 " %s missing: %s", check->lost, rows_are(check->lost),
+         check->lost_where);
+    note(p, check->displaced > 0, "%" PRIu64 " %s not in the order of writing: %s",
+         check->displaced, rows_are(check->displaced), check->displaced_where);
+    note(p, check->after_digest > 0, "%" PRIu64 " %s after the digest that closing wrote",
+         check->after_digest, rows_are(check->after_digest));
+    note(p,
+         check->is_closed && !check->digest_fits && check->damaged == 0 && check->lost == 0 &&
+             check->displaced == 0,
+         "the digest of all rows differs from that written on closing");
+}
+
+static void note_stream(struct problems *p, const struct wb_survey *survey,
+                        const struct wb_survey_stream *stream)
+{
+    char name[32];
+    snprintf(name, sizeof name, "%s stream %d", wb_role_name(stream->role), stream->id);
+    note(p, stream->chunks == 0 && !survey->cut_short, "%s: no data received", name);
+    /* Of a protected recording, note_rows() lists the damaged rows. */
+    note(p, stream->damaged > 0 && !survey->check.is_protected,
+         "%s: %" PRIu64 " chunk%s damaged (CRC-32)", name, stream->damaged,
+         plural(stream->damaged));
+    note(p, stream->missing > 0, "%s: %" PRIu64 " chunk%s missing in %" PRIu64 " place%s", name,
+         stream->missing, plural(stream->missing), stream->gaps, plural(stream->gaps));
+    note(p, survey->silence_limit_ns > 0 && stream->alone_silent_ns > survey->silence_limit_ns,
+         "%s: silent for %.2f s, the limit is %.2f s", name,
+         wb_seconds_from_ns(stream->alone_silent_ns), wb_seconds_from_ns(survey->silence_limit_ns));
+    note(p, stream->is_losing,
+         "%s: %.2g %% of its %s never came: %" PRIu64 " in %" PRIu64
+         " place%s, the longest of %.3g s",
+         name, wb_loss_share(&stream->loss) / WB_PERCENT,
+         stream->role == WB_ROLE_MOCAP ? "frames" : "lines", stream->loss.missing,
+         stream->loss.gaps, plural(stream->loss.gaps), stream->loss.longest_gap);
+    note(p, stream->repeated > 0, "%s: %" PRIu64 " chunk%s repeated or out of order", name,
+         stream->repeated, plural(stream->repeated));
 }
 
 bool wb_survey_problem(const struct wb_survey *survey, int *at, char *text, size_t size)
 {
-    const int rows = FILE_PROBLEMS + ROW_PROBLEMS;
-    while (*at < rows + survey->n_streams * STREAM_PROBLEMS) {
-        const int which = (*at)++;
-        if (which < FILE_PROBLEMS ? file_problem(survey, which, text, size)
-            : which < rows        ? row_problem(survey, which - FILE_PROBLEMS, text, size)
-                                  : stream_problem(survey, which - rows, text, size))
-            return true;
-    }
-    return false;
+    struct problems problems = {.wanted = (*at)++, .text = text, .size = size};
+    note_file(&problems, survey);
+    if (survey->check.is_protected)
+        note_rows(&problems, &survey->check);
+    for (int i = 0; i < survey->n_streams; i++)
+        note_stream(&problems, survey, &survey->streams[i]);
+    return problems.n > problems.wanted;
 }
 
 bool wb_survey_is_whole(const struct wb_survey *survey)
