@@ -11,46 +11,54 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/units.h"
-#include "daq/recording/replay.h"
 #include "daq/recording/sample_columns.h"
+#include "daq/recording/survey.h"
 
 #define WB_LOG_DOMAIN "export"
 
 /* A table, written to a temporary file that is renamed when complete. */
 struct table {
-    const char *name, *columns;
     FILE *file;
     char path[WB_PATH], part[WB_PATH + 8];
     uint64_t rows;
 };
 
-enum {
-    TABLE_LOAD,
-    TABLE_MOCAP,
-    TABLE_STAGE,
-    TABLE_EVENTS,
-    TABLE_CLOCK,
-    N_TABLES
+/* Source and receiver of the rows. */
+struct source {
+    int64_t first_ns; /* time of the first intact chunk; 0: none */
+    wb_export_put *put;
+    void *context;
 };
 
-struct export
-{
-    struct table tables[N_TABLES];
-    int64_t first_ns;
+/* Names of files and columns, and formats of the columns after t_s and t_ns: i integer, n number, m
+ * length in mm, f number of single precision, w word, t quoted text. */
+static const struct {
+    const char *name, *columns, *formats;
+} layouts[WB_SAMPLE_COLUMNS_TABLES] = {
+    [WB_SAMPLE_COLUMNS_LOAD] = {"load.csv",
+                                "t_s,t_ns,index,force_N,valid,unstable,overload,unit_changed",
+                                "iniiii"},
+    [WB_SAMPLE_COLUMNS_MOCAP] = {"mocap.csv",
+                                 "t_s,t_ns,frame,t_device_s,marker,x_m,y_m,z_m,size_m,residual_m,"
+                                 "params,occluded,model_filled,segment",
+                                 "inifffffiiii"},
+    [WB_SAMPLE_COLUMNS_STAGE] = {"stage.csv", "t_s,t_ns,state,position_mm,alarm", "wmi"},
+    [WB_SAMPLE_COLUMNS_EVENTS] = {"events.csv", "t_s,t_ns,kind,text", "tt"},
+    [WB_SAMPLE_COLUMNS_CLOCK] = {"clock.csv", "t_s,t_ns,stream,t_device_s,rtt_ns", "ini"},
 };
 
 /* --- tables --- */
 
-static enum wb_status open_table(struct table *table, const char *folder, const char *source,
-                                 const struct wb_rig *rig)
+static enum wb_status open_table(struct table *table, int which, const char *folder,
+                                 const char *source, const struct wb_rig *rig)
 {
-    WB_TRY(wb_file_join(table->path, folder, table->name));
+    WB_TRY(wb_file_join(table->path, folder, layouts[which].name));
     snprintf(table->part, sizeof table->part, "%s.part", table->path);
     table->file = fopen(table->part, "we");
     if (!table->file)
         return wb_fail(WB_ERR_IO, "cannot write '%s': %s", table->path, strerror(errno));
     fprintf(table->file, "# %s%s\n%s\n", rig->is_virtual ? "virtual rig, " : "", source,
-            table->columns);
+            layouts[which].columns);
     return WB_OK;
 }
 
@@ -101,134 +109,200 @@ static void put_text(FILE *file, const char *text)
     putc('"', file);
 }
 
-/* Begins a row with t_s and t_ns. */
-static FILE *begin_row(struct export *export, int which, int64_t t_ns)
+static void put_cell(FILE *file, char format, const union wb_cell *cell)
 {
-    struct table *table = &export->tables[which];
-    table->rows++;
-    bool before = t_ns < export->first_ns;
-    uint64_t since = before ? (uint64_t) export->first_ns - (uint64_t)t_ns
-                            : (uint64_t)t_ns - (uint64_t) export->first_ns;
-    const uint64_t second = (uint64_t)WB_NS_PER_S;
-    fprintf(table->file, "%s%" PRIu64 ".%09" PRIu64 ",%" PRId64, before ? "-" : "", since / second,
-            since % second, t_ns);
-    return table->file;
+    char number[WB_NUMBER_TEXT];
+    switch (format) {
+    case 'i':
+        fprintf(file, "%" PRId64, cell->integer);
+        break;
+    case 'f':
+        fputs(format_float((float)cell->real, number), file);
+        break;
+    case 'w':
+        fputs(cell->text, file);
+        break;
+    case 't':
+        put_text(file, cell->text);
+        break;
+    default:
+        if (isfinite(cell->real))
+            fputs(wb_number_format(format == 'm' ? cell->real / WB_MM : cell->real, number), file);
+    }
 }
 
-static const char *number_or_empty(double value, char text[WB_NUMBER_TEXT])
+static void put_row(void *context, int which, int64_t first_ns, const union wb_cell *cells)
 {
-    return isfinite(value) ? wb_number_format(value, text) : "";
+    struct table *const table = (struct table *)context + which;
+    const char *const formats = layouts[which].formats;
+    const int64_t t_ns = cells[1].integer;
+    const uint64_t since =
+        t_ns < first_ns ? (uint64_t)first_ns - (uint64_t)t_ns : (uint64_t)t_ns - (uint64_t)first_ns;
+    const uint64_t second = (uint64_t)WB_NS_PER_S;
+    table->rows++;
+    fprintf(table->file, "%s%" PRIu64 ".%09" PRIu64 ",%" PRId64, t_ns < first_ns ? "-" : "",
+            since / second, since % second, t_ns);
+    for (int i = 0; formats[i]; i++) {
+        putc(',', table->file);
+        put_cell(table->file, formats[i], &cells[2 + i]);
+    }
+    putc('\n', table->file);
 }
 
 /* --- rows --- */
 
-static void put_load(void *context, const struct wb_load_sample *sample)
+static double seconds(const struct source *source, int64_t t_ns)
 {
-    char force[WB_NUMBER_TEXT];
-    FILE *file = begin_row(context, TABLE_LOAD, sample->t_ns);
-    fprintf(file, ",%" PRIu64 ",%s,%d,%d,%d,%d\n", sample->index,
-            number_or_empty(sample->force, force), sample->valid, sample->unstable,
-            sample->overload, sample->unit_changed);
+    return wb_survey_seconds(source->first_ns, t_ns);
 }
 
-static void put_mocap(void *context, const struct wb_mocap_frame *frame)
+static const char *state_name(enum wb_stage_state state)
 {
-    char t_device[WB_NUMBER_TEXT], x[WB_NUMBER_TEXT], y[WB_NUMBER_TEXT], z[WB_NUMBER_TEXT],
-        size[WB_NUMBER_TEXT], residual[WB_NUMBER_TEXT];
-    snprintf(t_device, sizeof t_device, "%s", number_or_empty(frame->t_device, x));
+    static const char *const names[] = {"unknown", "idle", "run",   "jog",
+                                        "hold",    "home", "alarm", "other"};
+    return (size_t)state < sizeof names / sizeof names[0] ? names[state] : "unknown";
+}
+
+static enum wb_status take_first(void *context, const struct wb_chunk *chunk)
+{
+    int64_t *const first_ns = context;
+    if (!chunk->intact)
+        return WB_OK;
+    *first_ns = chunk->t_ns;
+    return WB_ERR_TIMEOUT; /* ends the walk after the first intact chunk */
+}
+
+/* Finds the time of the first intact chunk. WB_ERR_DATA: no chunk could be read from a damaged
+ * database. */
+static enum wb_status find_first(struct wb_recording *recording, int64_t *first_ns)
+{
+    const enum wb_status status = wb_recording_each_chunk(recording, take_first, first_ns);
+    return status == WB_ERR_TIMEOUT ? WB_OK : status;
+}
+
+static void on_load(void *context, const struct wb_load_sample *sample)
+{
+    struct source *const source = context;
+    const union wb_cell cells[] = {
+        {.real = seconds(source, sample->t_ns)},
+        {.integer = sample->t_ns},
+        {.integer = (int64_t)sample->index},
+        {.real = sample->force},
+        {.integer = sample->valid},
+        {.integer = sample->unstable},
+        {.integer = sample->overload},
+        {.integer = sample->unit_changed},
+    };
+    source->put(source->context, WB_SAMPLE_COLUMNS_LOAD, source->first_ns, cells);
+}
+
+static void on_mocap(void *context, const struct wb_mocap_frame *frame)
+{
+    struct source *const source = context;
     for (int i = 0; i < frame->n_markers; i++) {
-        const struct wb_marker *m = &frame->markers[i];
-        FILE *file = begin_row(context, TABLE_MOCAP, frame->t_ns);
-        fprintf(file, ",%" PRId32 ",%s,%" PRId32 ",%s,%s,%s,%s,%s,%d,%d,%d,%d\n",
-                frame->frame_number, t_device, m->id, format_float(m->position[0], x),
-                format_float(m->position[1], y), format_float(m->position[2], z),
-                format_float(m->size, size), format_float(m->residual, residual), m->params,
-                (m->params & WB_MARKER_OCCLUDED) != 0, (m->params & WB_MARKER_MODEL_FILLED) != 0,
-                frame->segment);
+        const struct wb_marker *const marker = &frame->markers[i];
+        const union wb_cell cells[] = {
+            {.real = seconds(source, frame->t_ns)},
+            {.integer = frame->t_ns},
+            {.integer = frame->frame_number},
+            {.real = frame->t_device},
+            {.integer = marker->id},
+            {.real = (double)marker->position[0]},
+            {.real = (double)marker->position[1]},
+            {.real = (double)marker->position[2]},
+            {.real = (double)marker->size},
+            {.real = (double)marker->residual},
+            {.integer = marker->params},
+            {.integer = (marker->params & WB_MARKER_OCCLUDED) != 0},
+            {.integer = (marker->params & WB_MARKER_MODEL_FILLED) != 0},
+            {.integer = frame->segment},
+        };
+        source->put(source->context, WB_SAMPLE_COLUMNS_MOCAP, source->first_ns, cells);
     }
 }
 
-static void put_stage(void *context, const struct wb_stage_report *report)
+static void on_stage(void *context, const struct wb_stage_report *report)
 {
-    char position[WB_NUMBER_TEXT];
-    FILE *file = begin_row(context, TABLE_STAGE, report->t_ns);
-    fprintf(file, ",%s,%s,%d\n", wb_sample_columns_state(report->state),
-            number_or_empty(report->position / WB_MM, position), report->alarm);
+    struct source *const source = context;
+    const union wb_cell cells[] = {
+        {.real = seconds(source, report->t_ns)},
+        {.integer = report->t_ns},
+        {.text = state_name(report->state)},
+        {.real = report->position},
+        {.integer = report->alarm},
+    };
+    source->put(source->context, WB_SAMPLE_COLUMNS_STAGE, source->first_ns, cells);
 }
 
-static enum wb_status put_event(void *context, const struct wb_event *event)
+static enum wb_status on_event(void *context, const struct wb_event *event)
 {
-    FILE *file = begin_row(context, TABLE_EVENTS, event->t_ns);
-    putc(',', file);
-    put_text(file, event->kind);
-    putc(',', file);
-    put_text(file, event->text);
-    putc('\n', file);
+    struct source *const source = context;
+    const union wb_cell cells[] = {
+        {.real = seconds(source, event->t_ns)},
+        {.integer = event->t_ns},
+        {.text = event->kind},
+        {.text = event->text},
+    };
+    source->put(source->context, WB_SAMPLE_COLUMNS_EVENTS, source->first_ns, cells);
     return WB_OK;
 }
 
-static enum wb_status put_clock(void *context, const struct wb_clock_row *row)
+static enum wb_status on_clock(void *context, const struct wb_clock_row *row)
 {
-    char t_device[WB_NUMBER_TEXT];
-    FILE *file = begin_row(context, TABLE_CLOCK, row->t_host_ns);
-    fprintf(file, ",%d,%s,%" PRId64 "\n", row->stream, number_or_empty(row->t_device, t_device),
-            row->rtt_ns);
+    struct source *const source = context;
+    const union wb_cell cells[] = {
+        {.real = seconds(source, row->t_host_ns)},
+        {.integer = row->t_host_ns},
+        {.integer = row->stream},
+        {.real = row->t_device},
+        {.integer = row->rtt_ns},
+    };
+    source->put(source->context, WB_SAMPLE_COLUMNS_CLOCK, source->first_ns, cells);
     return WB_OK;
 }
 
-/* --- tables of a recording --- */
-
-static enum wb_status write_tables(struct export *export, struct wb_recording *recording,
-                                   const struct wb_rig *rig, struct wb_export_counts *counts)
+enum wb_status wb_export_rows(struct wb_recording *recording, const struct wb_rig *rig,
+                              wb_export_put *put, void *context, struct wb_replay_counts *counts)
 {
-    enum wb_status status = wb_sample_columns_start(recording, &export->first_ns);
-    if (status != WB_OK)
-        return status;
+    struct source source = {.put = put, .context = context};
     const struct wb_sink sink = {
-        .context = export, .load = put_load, .mocap = put_mocap, .stage = put_stage};
-    struct wb_replay_counts replayed;
-    status = wb_replay_run(recording, rig, &sink, 0.0, &replayed);
-    counts->damaged_chunks = replayed.damaged_chunks;
-    enum wb_status events = wb_recording_each_event(recording, put_event, export);
-    enum wb_status clock = wb_recording_each_clock(recording, put_clock, export);
+        .context = &source, .load = on_load, .mocap = on_mocap, .stage = on_stage};
+    *counts = (struct wb_replay_counts){0};
+    WB_TRY(find_first(recording, &source.first_ns));
+    enum wb_status status = wb_replay_run(recording, rig, &sink, 0.0, counts);
+    const enum wb_status events = wb_recording_each_event(recording, on_event, &source);
+    const enum wb_status clock = wb_recording_each_clock(recording, on_clock, &source);
     if (status == WB_OK)
         status = events;
     return status == WB_OK ? clock : status;
 }
 
+/* --- tables of a recording --- */
+
 enum wb_status wb_export_csv(struct wb_recording *recording, const struct wb_rig *rig,
                              const char *source, const char *folder,
                              struct wb_export_counts *counts)
 {
-    static const char *const names[][2] = {
-        {"load.csv", "t_s,t_ns,index,force_N,valid,unstable,overload,unit_changed"},
-        {"mocap.csv", "t_s,t_ns,frame,t_device_s,marker,x_m,y_m,z_m,size_m,residual_m,params,"
-                      "occluded,model_filled,segment"},
-        {"stage.csv", "t_s,t_ns,state,position_mm,alarm"},
-        {"events.csv", "t_s,t_ns,kind,text"},
-        {"clock.csv", "t_s,t_ns,stream,t_device_s,rtt_ns"},
-    };
-    struct export export = {.first_ns = 0};
-    struct wb_export_counts counted = {0};
+    struct table tables[WB_SAMPLE_COLUMNS_TABLES] = {{0}};
+    struct wb_replay_counts replayed = {0};
     enum wb_status status = WB_OK;
-    for (int i = 0; i < N_TABLES && status == WB_OK; i++) {
-        export.tables[i].name = names[i][0];
-        export.tables[i].columns = names[i][1];
-        status = open_table(&export.tables[i], folder, source, rig);
-    }
+    for (int i = 0; i < WB_SAMPLE_COLUMNS_TABLES && status == WB_OK; i++)
+        status = open_table(&tables[i], i, folder, source, rig);
     if (status == WB_OK)
-        status = write_tables(&export, recording, rig, &counted);
+        status = wb_export_rows(recording, rig, put_row, tables, &replayed);
     bool keep = status == WB_OK || status == WB_ERR_DATA;
-    for (int i = 0; i < N_TABLES; i++) {
-        enum wb_status closed = close_table(&export.tables[i], keep);
+    for (int i = 0; i < WB_SAMPLE_COLUMNS_TABLES; i++) {
+        enum wb_status closed = close_table(&tables[i], keep);
         if (status == WB_OK)
             status = closed;
     }
-    counted.load = export.tables[TABLE_LOAD].rows;
-    counted.mocap = export.tables[TABLE_MOCAP].rows;
-    counted.stage = export.tables[TABLE_STAGE].rows;
-    counted.events = export.tables[TABLE_EVENTS].rows;
-    counted.clock = export.tables[TABLE_CLOCK].rows;
-    *counts = counted;
+    *counts = (struct wb_export_counts){
+        .load = tables[WB_SAMPLE_COLUMNS_LOAD].rows,
+        .mocap = tables[WB_SAMPLE_COLUMNS_MOCAP].rows,
+        .stage = tables[WB_SAMPLE_COLUMNS_STAGE].rows,
+        .events = tables[WB_SAMPLE_COLUMNS_EVENTS].rows,
+        .clock = tables[WB_SAMPLE_COLUMNS_CLOCK].rows,
+        .damaged_chunks = replayed.damaged_chunks,
+    };
     return status;
 }

@@ -1,12 +1,24 @@
-/* Exports the samples of a recording as CSV tables. */
+/* The samples of a recording as rows of tables, and as CSV files. */
 #ifndef WB_DAQ_RECORDING_EXPORT_H
 #define WB_DAQ_RECORDING_EXPORT_H
 
 #include <stdint.h>
 
+#include "base/columns.h"
 #include "base/status.h"
 #include "daq/protocol/rig.h"
 #include "daq/recording/recording.h"
+#include "daq/recording/replay.h"
+
+/* Receives a row of a table (sample_columns.h), with a cell per column; first_ns is the time of the
+ * first intact chunk. */
+typedef void wb_export_put(void *context, int table, int64_t first_ns, const union wb_cell *cells);
+
+/* Decodes the whole recording into rows. WB_ERR_DATA: the database is damaged, and all readable
+ * rows were delivered. *counts is written in every case. */
+WB_MUST_CHECK enum wb_status wb_export_rows(struct wb_recording *recording,
+                                            const struct wb_rig *rig, wb_export_put *put,
+                                            void *context, struct wb_replay_counts *counts);
 
 struct wb_export_counts {
     uint64_t load, mocap, stage, events, clock; /* rows written (mocap: one per marker) */

@@ -21,14 +21,6 @@ enum {
 /* Index of the table with this name, such as "load"; -1: unknown. */
 int wb_sample_columns_find(const char *name);
 
-/* Time of the first intact chunk; 0: none. WB_ERR_DATA: no chunk could be read from a damaged
- * database. */
-WB_MUST_CHECK enum wb_status wb_sample_columns_start(struct wb_recording *recording,
-                                                     int64_t *first_ns);
-
-/* Name of a stage's state in tables, such as "idle". */
-const char *wb_sample_columns_state(enum wb_stage_state state);
-
 /* Decodes the whole recording. t_s counts from the first intact chunk, t_ns is the host's monotonic
  * clock. WB_ERR_DATA: the database is damaged, and the tables hold all readable rows; after any
  * other failure they are empty. The caller releases each table in both cases. *counts is written in
