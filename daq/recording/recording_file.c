@@ -8,7 +8,6 @@
 #include <unistd.h>
 #include <zstd.h>
 
-#include "base/compress.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "daq/recording/recording_private.h"
@@ -52,21 +51,6 @@ static enum wb_status write_all(int to, const void *bytes, size_t n, const char 
     return WB_OK;
 }
 
-/* Reads a block of the compressed file; *n is 0 at its end. */
-static enum wb_status read_block(int from, void *block, size_t size, const char *path, size_t *n,
-                                 struct wb_reason *why)
-{
-    for (;;) {
-        ssize_t got = read(from, block, size);
-        if (got >= 0) {
-            *n = (size_t)got;
-            return WB_OK;
-        }
-        if (errno != EINTR)
-            return wb_fail_to(why, WB_ERR_IO, "cannot read '%s': %s", path, strerror(errno));
-    }
-}
-
 struct decompression {
     ZSTD_DStream *stream;
     void *in, *out;
@@ -78,9 +62,11 @@ static enum wb_status decompress_all(struct decompression *d, int from, int to, 
 {
     size_t left = 1; /* result of ZSTD_decompressStream(): 0 at the end of a frame */
     for (;;) {
-        ZSTD_inBuffer in = {.src = d->in};
-        WB_TRY(read_block(from, d->in, d->in_size, path, &in.size, why));
-        if (in.size == 0) {
+        const ssize_t n = TEMP_FAILURE_RETRY(read(from, d->in, d->in_size));
+        if (n < 0)
+            return wb_fail_to(why, WB_ERR_IO, "cannot read '%s': %s", path, strerror(errno));
+        ZSTD_inBuffer in = {.src = d->in, .size = (size_t)n};
+        if (n == 0) {
             *whole = left == 0;
             return WB_OK;
         }
@@ -88,9 +74,7 @@ static enum wb_status decompress_all(struct decompression *d, int from, int to, 
             ZSTD_outBuffer out = {.dst = d->out, .size = d->out_size};
             left = ZSTD_decompressStream(d->stream, &out, &in);
             WB_TRY(write_all(to, d->out, out.pos,
-                             "a decompressed recording to the temporary "
-                             "folder ($TMPDIR)",
-                             why));
+                             "a decompressed recording to the temporary folder ($TMPDIR)", why));
             if (ZSTD_isError(left)) {
                 *whole = false;
                 return WB_OK;
@@ -115,15 +99,6 @@ enum wb_status wb_recording_decompress(int from, int to, const char *path, bool 
     free(d.in);
     free(d.out);
     return status;
-}
-
-static enum wb_status open_file(const char *path, int *descriptor, struct wb_reason *why)
-{
-    *descriptor = open(path, O_RDONLY | O_CLOEXEC);
-    if (*descriptor >= 0)
-        return WB_OK;
-    return wb_fail_to(why, errno == ENOENT ? WB_ERR_NOT_FOUND : WB_ERR_IO, "cannot read '%s': %s",
-                      path, strerror(errno));
 }
 
 /* Finds the write-ahead log, which holds a part of a recording that was not closed. */
@@ -171,8 +146,10 @@ enum wb_status wb_recording_sha256(const char *path, char hex[65], struct wb_rea
     char wal[WB_PATH];
     if (find_wal(path, wal))
         return hash_whole(path, -1, wal, hex, why);
-    int descriptor;
-    WB_TRY(open_file(path, &descriptor, why));
+    const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0)
+        return wb_fail_to(why, errno == ENOENT ? WB_ERR_NOT_FOUND : WB_ERR_IO,
+                          "cannot read '%s': %s", path, strerror(errno));
     uint8_t magic[4];
     ssize_t n = pread(descriptor, magic, sizeof magic, 0);
     enum wb_status status;
@@ -181,55 +158,5 @@ enum wb_status wb_recording_sha256(const char *path, char hex[65], struct wb_rea
     else
         status = wb_hash_descriptor(descriptor, path, hex, why);
     close(descriptor);
-    return status;
-}
-
-static enum wb_status write_compressed(const char *target, const void *bytes, size_t size)
-{
-    char temporary[WB_PATH];
-    int n = snprintf(temporary, sizeof temporary, "%s.XXXXXX", target);
-    if (n < 0 || (size_t)n >= sizeof temporary)
-        return wb_fail(WB_ERR_ARGUMENT, "path '%.100s...' is too long", target);
-    int to = mkostemp(temporary, O_CLOEXEC);
-    if (to < 0)
-        return wb_fail(WB_ERR_IO, "cannot create a temporary file beside '%s': %s", target,
-                       strerror(errno));
-    enum wb_status status = write_all(to, bytes, size, target, NULL);
-    if (status == WB_OK && (fchmod(to, 0644) != 0 || fsync(to) != 0))
-        status = wb_fail(WB_ERR_IO, "cannot write '%s': %s", target, strerror(errno));
-    close(to);
-    /* link() fails if the name exists; rename() would overwrite the file. */
-    if (status == WB_OK && link(temporary, target) != 0)
-        status = wb_fail(errno == EEXIST ? WB_ERR_EXISTS : WB_ERR_IO, "cannot create '%s': %s",
-                         target, strerror(errno));
-    unlink(temporary);
-    return status;
-}
-
-enum wb_status wb_recording_compress(const char *path, const char *target)
-{
-    char wal[WB_PATH];
-    if (find_wal(path, wal))
-        return wb_fail(WB_ERR_BUSY, "'%s' is being recorded or was not closed", path);
-    if (wb_file_exists(target))
-        return wb_fail(WB_ERR_EXISTS,
-                       "'%s' exists: recordings are never overwritten; choose another name",
-                       target);
-    char *bytes = NULL;
-    size_t size = 0;
-    WB_TRY(wb_file_read(path, &bytes, &size));
-    if (size < 16 || memcmp(bytes, "SQLite format 3", 16) != 0) {
-        free(bytes);
-        return wb_fail(WB_ERR_FORMAT, "'%s' is not a recording", path);
-    }
-    void *packed;
-    size_t packed_size;
-    enum wb_status status =
-        wb_compress(bytes, size, WB_COMPRESS_STORED, path, &packed, &packed_size, NULL);
-    if (status == WB_OK) {
-        status = write_compressed(target, packed, packed_size);
-        free(packed);
-    }
-    free(bytes);
     return status;
 }

@@ -187,9 +187,4 @@ bool wb_recording_is_zstd(const uint8_t *bytes, size_t n);
 WB_MUST_CHECK enum wb_status wb_recording_decompress(int from, int to, const char *path,
                                                      bool *whole, struct wb_reason *why);
 
-/* Compresses a closed recording to `target` (.wbr.zst), which is created atomically. The same
- * recording and release of zstd give the same bytes. WB_ERR_EXISTS: the target exists; WB_ERR_BUSY:
- * the recording was not closed. */
-WB_MUST_CHECK enum wb_status wb_recording_compress(const char *path, const char *target);
-
 #endif

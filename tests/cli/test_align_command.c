@@ -8,6 +8,7 @@
 #include "base/json.h"
 #include "daq/recording/recording_private.h"
 #include "tests/analysis/synthetic.h"
+#include "tests/compress.h"
 #include "tests/schemas.h"
 
 struct outcome {
@@ -123,7 +124,7 @@ static void compressed_recordings_give_the_same(void **state)
     char plain[WB_PATH], packed[WB_PATH];
     assert_int_equal(wb_file_join(plain, folder, "whole.wbr"), WB_OK);
     assert_int_equal(wb_file_join(packed, folder, "whole.wbr.zst"), WB_OK);
-    assert_int_equal(wb_recording_compress(plain, packed), WB_OK);
+    assert_int_equal(compress_recording(plain, packed), WB_OK);
     expect("align $DIR/whole.wbr -o $DIR/plain", 0, "", "");
     expect("align $DIR/whole.wbr.zst -o $DIR/packed", 0, "", "");
     char *const a = read_whole("plain/force_deflection.csv");
@@ -162,7 +163,7 @@ static void damaged_or_cut_recordings_are_not_complete(void **state)
     struct stat there;
     assert_int_equal(wb_file_join(packed, folder, "cut.wbr.zst"), WB_OK);
     assert_int_equal(wb_file_join(path, folder, "whole.wbr"), WB_OK);
-    assert_int_equal(wb_recording_compress(path, packed), WB_OK);
+    assert_int_equal(compress_recording(path, packed), WB_OK);
     assert_int_equal(stat(packed, &there), 0);
     assert_int_equal(truncate(packed, there.st_size * 199 / 200), 0);
     expect("align $DIR/cut.wbr.zst -o $DIR/cut-packed", 3, "its end is missing", "is truncated");

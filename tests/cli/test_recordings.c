@@ -6,6 +6,7 @@
 
 #include "base/json.h"
 #include "daq/recording/recording_private.h"
+#include "tests/compress.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/daq/small_test.h"
 
@@ -166,7 +167,7 @@ static void compressed_recordings_are_taken_everywhere(void **state)
     small_make(bench->path, true);
     char packed[128];
     snprintf(packed, sizeof packed, "%s/test.wbr.zst", bench->folder);
-    assert_int_equal(wb_recording_compress(bench->path, packed), WB_OK);
+    assert_int_equal(compress_recording(bench->path, packed), WB_OK);
     tool(bench, "verify $REC $REC.zst | grep -o 'sha256 .*' | sort -u | wc -l", &o);
     assert_string_equal(o.out, "1\n");
     static const char *const commands[] = {"info $REC.zst", "verify $REC.zst",

@@ -14,6 +14,7 @@
 #include "daq/recording/recording_private.h"
 #include "daq/recording/recover.h"
 #include "daq/recording/survey.h"
+#include "tests/compress.h"
 #include "tests/daq/small_test.h"
 #include "tests/folder.h"
 #include "tests/trials.h"
@@ -187,7 +188,7 @@ int main(int argc, char **argv)
     small_make(seed, true);
     char *sources[2] = {NULL, NULL};
     size_t sizes[2] = {0, 0};
-    if (wb_recording_compress(seed, packed) != WB_OK ||
+    if (compress_recording(seed, packed) != WB_OK ||
         wb_file_read(seed, &sources[0], &sizes[0]) != WB_OK ||
         wb_file_read(packed, &sources[1], &sizes[1]) != WB_OK)
         return 1;

@@ -9,6 +9,7 @@
 #include "base/hash.h"
 #include "daq/recording/recording_private.h"
 #include "daq/recording/survey.h"
+#include "tests/compress.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/daq/small_test.h"
 #include "tests/trials.h"
@@ -172,7 +173,7 @@ static void every_bit_of_a_compressed_one_is_noticed_or_without_effect(void **st
     make(bench->path);
     assert_true(read_all(bench->path, expected));
     snprintf(packed, sizeof packed, "%s/test.wbr.zst", bench->folder);
-    assert_int_equal(wb_recording_compress(bench->path, packed), WB_OK);
+    assert_int_equal(compress_recording(bench->path, packed), WB_OK);
     flip_all(packed, expected, &n_tried, &n_noticed);
     count_trials("Every bit of a compressed recording flipped", n_tried,
                  "bits: %zu detected, %zu without effect on the data", n_noticed,

@@ -7,6 +7,7 @@
 #include "daq/recording/recording_salvage.h"
 #include "daq/recording/recover.h"
 #include "daq/recording/survey.h"
+#include "tests/compress.h"
 #include "tests/daq/old_recording.h"
 #include "tests/daq/recording_fixture.h"
 #include "tests/trials.h"
@@ -433,7 +434,7 @@ static void truncated_compressed_recordings_are_recovered_up_to_their_end(void *
     struct wb_recover found;
     bench_make(bench->path, CHUNKS);
     snprintf(names.in, sizeof names.in, "%s/packed.wbr.zst", bench->folder);
-    assert_int_equal(wb_recording_compress(bench->path, names.in), WB_OK);
+    assert_int_equal(compress_recording(bench->path, names.in), WB_OK);
     assert_int_equal(recover(&names, &found), 3 * CHUNKS);
     assert_true(wb_recover_is_whole(&found));
     assert_int_equal(truncate(names.in, size_of(names.in) / 2), 0);
