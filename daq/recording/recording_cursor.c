@@ -10,14 +10,26 @@
  * page. Then the step doubles: with larger damage, intact rows in between may be skipped. */
 #define STEPS_OF_ONE 256
 
-enum wb_status wb_recording_cursor_open(struct wb_recording_cursor *cursor,
-                                        struct wb_recording *recording, const char *columns,
-                                        const char *table, bool report)
+/* The columns to select for wb_recording_read_row(). */
+static void row_columns(const struct wb_recording *recording, enum wb_recording_kind kind,
+                        char *text, size_t size)
 {
-    char sql[160];
+    snprintf(text, size, "rowid, %s%s", wb_recording_tables[kind].columns,
+             recording->schema >= 2       ? ", crc32, chain"
+             : kind == WB_RECORDING_CHUNK ? ", crc32"
+                                          : "");
+}
+
+enum wb_status wb_recording_cursor_open(struct wb_recording_cursor *cursor,
+                                        struct wb_recording *recording, enum wb_recording_kind kind,
+                                        const char *columns, bool report)
+{
+    char whole_row[160], sql[240];
     *cursor = (struct wb_recording_cursor){
-        .recording = recording, .last = -1, .before_last = -1, .code = SQLITE_DONE};
-    snprintf(sql, sizeof sql, "SELECT %s FROM %s WHERE rowid >= ?", columns, table);
+        .recording = recording, .kind = kind, .last = -1, .before_last = -1, .code = SQLITE_DONE};
+    row_columns(recording, kind, whole_row, sizeof whole_row);
+    snprintf(sql, sizeof sql, "SELECT %s FROM %s WHERE rowid >= ?", columns ? columns : whole_row,
+             wb_recording_tables[kind].name);
     const int code = sqlite3_prepare_v2(recording->db, sql, -1, &cursor->statement, NULL);
     if (code == SQLITE_OK) {
         sqlite3_bind_int64(cursor->statement, 1, -1);

@@ -79,29 +79,28 @@ uint32_t wb_recording_chain(uint32_t before, uint32_t row_crc32);
  * significant first. */
 void wb_recording_digest_add(struct wb_hash *digest, uint32_t row_crc32);
 
-/* The columns to select for wb_recording_read_row(). */
-void wb_recording_row_columns(const struct wb_recording *recording, enum wb_recording_kind kind,
-                              char *text, size_t size);
-void wb_recording_read_row(const struct wb_recording *recording, enum wb_recording_kind kind,
-                           sqlite3_stmt *statement, struct wb_recording_row *row);
+struct wb_recording_cursor;
+/* Reads the row at a cursor over whole rows. */
+void wb_recording_read_row(const struct wb_recording_cursor *cursor, struct wb_recording_row *row);
 
 /* --- reading a table --- */
 
 /* Iterates over a table in order of row numbers and skips damaged pages. */
 struct wb_recording_cursor {
     struct wb_recording *recording;
+    enum wb_recording_kind kind;
     sqlite3_stmt *statement;
     int64_t last, before_last, n_steps, n_rows;
     int code;              /* SQLITE_DONE, or the cause of missing rows */
     int64_t n_rows_before; /* rows before the first damage */
 };
 
-/* `columns` must begin with rowid. Logs a failure if `report`; the cursor then has no rows and may
- * be closed. */
+/* `columns` must begin with rowid; NULL: those of wb_recording_read_row(). Logs a failure if
+ * `report`; the cursor then has no rows and may be closed. */
 WB_MUST_CHECK enum wb_status wb_recording_cursor_open(struct wb_recording_cursor *cursor,
                                                       struct wb_recording *recording,
-                                                      const char *columns, const char *table,
-                                                      bool report);
+                                                      enum wb_recording_kind kind,
+                                                      const char *columns, bool report);
 /* False at the end. */
 bool wb_recording_cursor_step(struct wb_recording_cursor *cursor);
 /* Records that rows are missing at this point. */
@@ -139,11 +138,10 @@ struct wb_recording {
     int uncompressed; /* descriptor of the decompressed file; -1: not compressed */
     bool complete;    /* closed properly */
     bool shortened;   /* shorter than its header says, or not completely decompressed */
-    int64_t bytes_there, bytes_expected; /* size of the database; size by its header */
-    bool is_log_missing;                 /* not closed, and without a write-ahead log */
-    struct wb_recording_log log;         /* the write-ahead log */
-    const char *reported[8];             /* names of tables that were reported as damaged */
-    size_t n_reported;
+    int64_t bytes_there, bytes_expected;   /* size of the database; size by its header */
+    bool is_log_missing;                   /* not closed, and without a write-ahead log */
+    struct wb_recording_log log;           /* the write-ahead log */
+    bool is_reported[WB_RECORDING_TABLES]; /* tables that were reported as damaged */
     int64_t n_rows_max; /* upper bound of the rows of a table in a file of this size */
     /* Reading and writing. */
     int n_streams;

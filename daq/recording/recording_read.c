@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/memory.h"
 #include "daq/recording/recording_private.h"
 
 #define WB_LOG_DOMAIN "recording"
@@ -74,9 +75,7 @@ static enum wb_status check_header(struct wb_recording *recording, int descripto
 static char *make_uri(const char *path, const char *options)
 {
     /* '%', '?' and '#' are special in the path of a URI. */
-    char *uri = malloc(3 * strlen(path) + strlen(options) + 16);
-    if (!uri)
-        return NULL;
+    char *const uri = wb_memory_new(3 * strlen(path) + strlen(options) + 16, 1);
     char *to = uri + sprintf(uri, "file:");
     /* After two slashes SQLite would expect a host. */
     while (path[0] == '/' && path[1] == '/')
@@ -94,9 +93,7 @@ static char *make_uri(const char *path, const char *options)
 /* Opens the database and reads its schema, because SQLite reads nothing when opening. */
 static int open_database(struct wb_recording *recording, const char *path, const char *options)
 {
-    char *uri = make_uri(path, options);
-    if (!uri)
-        return SQLITE_NOMEM;
+    char *const uri = make_uri(path, options);
     int code = sqlite3_open_v2(uri, &recording->db,
                                SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, NULL);
     free(uri);
@@ -221,49 +218,43 @@ static enum wb_status open_any(struct wb_recording *recording, int descriptor)
 
 /* --- reading rows --- */
 
-static enum wb_status prepare(struct wb_recording *recording, const char *sql,
-                              sqlite3_stmt **statement)
+/* False if a problem of this table was reported before. */
+static bool is_first_report(struct wb_recording *recording, enum wb_recording_kind kind)
 {
-    int code = sqlite3_prepare_v2(recording->db, sql, -1, statement, NULL);
-    if (code == SQLITE_OK)
-        return WB_OK;
-    if (code == SQLITE_ERROR)
-        return wb_fail_also(recording->why, WB_ERR_DATA, "'%s' is damaged: %s", recording->path,
-                            sqlite3_errmsg(recording->db));
-    return wb_recording_fail(recording, code, "read");
+    const bool is_first = !recording->is_reported[kind];
+    recording->is_reported[kind] = true;
+    return is_first;
 }
 
-/* False if a problem of this table was reported before. */
-static bool is_first_report(struct wb_recording *recording, const char *table)
+static enum wb_status report_damaged(struct wb_recording *recording, enum wb_recording_kind kind,
+                                     size_t n)
 {
-    for (size_t i = 0; i < recording->n_reported; i++) {
-        if (strcmp(recording->reported[i], table) == 0)
-            return false;
-    }
-    if (recording->n_reported < sizeof recording->reported / sizeof recording->reported[0])
-        recording->reported[recording->n_reported++] = table;
-    return true;
+    if (!is_first_report(recording, kind))
+        return WB_ERR_DATA;
+    return wb_fail_also(recording->why, WB_ERR_DATA, "'%s': %zu row%s of table %s %s damaged",
+                        recording->path, n, n == 1 ? "" : "s", wb_recording_tables[kind].name,
+                        n == 1 ? "is" : "are");
 }
 
 /* Status at the end of a walk: reports missing rows. */
 static enum wb_status end_walk(struct wb_recording *recording,
-                               const struct wb_recording_cursor *cursor, const char *table)
+                               const struct wb_recording_cursor *cursor)
 {
     if (cursor->code == SQLITE_DONE)
         return WB_OK;
     if ((cursor->code & 0xff) == SQLITE_NOMEM)
         return wb_recording_fail(recording, cursor->code, "read");
     /* A truncated file was reported on opening, and every table is walked twice. */
-    if (recording->shortened || !is_first_report(recording, table))
+    if (recording->shortened || !is_first_report(recording, cursor->kind))
         return WB_ERR_DATA;
     const int64_t after = cursor->n_rows - cursor->n_rows_before;
     char behind[64] = "";
     if (after > 0)
         snprintf(behind, sizeof behind, "; %lld more after the damage", (long long)after);
-    return wb_fail_also(recording->why, WB_ERR_DATA,
-                        "'%s': table %s is damaged after %lld row%s: %s%s", recording->path, table,
-                        (long long)cursor->n_rows_before, cursor->n_rows_before == 1 ? "" : "s",
-                        sqlite3_errstr(cursor->code), behind);
+    return wb_fail_also(
+        recording->why, WB_ERR_DATA, "'%s': table %s is damaged after %lld row%s: %s%s",
+        recording->path, wb_recording_tables[cursor->kind].name, (long long)cursor->n_rows_before,
+        cursor->n_rows_before == 1 ? "" : "s", sqlite3_errstr(cursor->code), behind);
 }
 
 static bool role_of(const char *name, enum wb_role *role)
@@ -302,29 +293,19 @@ static enum wb_status read_stream_row(struct wb_recording *recording,
     return wb_recording_remember_stream(recording, &stream, text_of(&v[4]));
 }
 
-/* Opens a cursor over whole rows of a table. */
-static enum wb_status open_rows(struct wb_recording_cursor *cursor, struct wb_recording *recording,
-                                enum wb_recording_kind kind)
-{
-    char columns[160];
-    wb_recording_row_columns(recording, kind, columns, sizeof columns);
-    return wb_recording_cursor_open(cursor, recording, columns, wb_recording_tables[kind].name,
-                                    true);
-}
-
 static enum wb_status read_streams(struct wb_recording *recording)
 {
     struct wb_recording_cursor cursor;
     struct wb_recording_row row;
-    WB_TRY(open_rows(&cursor, recording, WB_RECORDING_STREAM));
+    WB_TRY(wb_recording_cursor_open(&cursor, recording, WB_RECORDING_STREAM, NULL, true));
     enum wb_status status = WB_OK;
     while (status != WB_ERR_MEMORY && cursor.n_rows < 1000 && wb_recording_cursor_step(&cursor)) {
-        wb_recording_read_row(recording, WB_RECORDING_STREAM, cursor.statement, &row);
+        wb_recording_read_row(&cursor, &row);
         status =
             read_stream_row(recording, &row); /* after reported damage the rest is still used */
     }
     if (status != WB_ERR_MEMORY)
-        status = end_walk(recording, &cursor, "stream");
+        status = end_walk(recording, &cursor);
     wb_recording_cursor_close(&cursor);
     return status == WB_ERR_MEMORY ? status : WB_OK;
 }
@@ -353,25 +334,18 @@ enum wb_status wb_recording_open_with_reason(struct wb_recording **out, const ch
                             : errno == EACCES ? WB_ERR_PERMISSION
                                               : WB_ERR_IO,
                             "cannot open '%s': %s", path, strerror(errno));
-    struct wb_recording *recording = calloc(1, sizeof *recording);
-    if (recording) {
-        recording->why = why;
-        recording->uncompressed = -1;
-        recording->path = strdup(path);
-    }
-    enum wb_status status = WB_OK;
-    if (!recording || !recording->path)
-        status = wb_fail_also(why, WB_ERR_MEMORY, "out of memory for '%s'", path);
-    if (status == WB_OK)
-        status = open_any(recording, descriptor);
+    struct wb_recording *const recording = wb_memory_new(1, sizeof *recording);
+    recording->why = why;
+    recording->uncompressed = -1;
+    recording->path = wb_memory_text(path);
+    enum wb_status status = open_any(recording, descriptor);
     close(descriptor);
     if (status == WB_OK) {
         find_schema(recording);
         status = read_streams(recording);
     }
     if (status != WB_OK) {
-        if (recording)
-            wb_recording_release(recording);
+        wb_recording_release(recording);
         return status;
     }
     char *closed = NULL;
@@ -465,7 +439,7 @@ struct meta {
 
 struct metas {
     struct meta *items;
-    size_t n;
+    size_t n, capacity;
 };
 
 static void release_metas(struct metas *metas)
@@ -483,30 +457,18 @@ static int compare_metas(const void *a, const void *b)
 }
 
 /* Adds a meta value; of a key that was set twice, the later value is kept. */
-static enum wb_status add_meta(struct wb_recording *recording, struct metas *metas, const char *key,
-                               const char *value)
+static void add_meta(struct metas *metas, const char *key, const char *value)
 {
-    struct meta *found = NULL;
-    for (size_t i = 0; i < metas->n && !found; i++)
-        found = strcmp(metas->items[i].key, key) == 0 ? &metas->items[i] : NULL;
-    char *const copy = strdup(value), *const name = found ? NULL : strdup(key);
-    struct meta *const larger =
-        found ? metas->items : realloc(metas->items, (metas->n + 1) * sizeof *larger);
-    if (larger)
-        metas->items = larger;
-    if (!copy || !larger || (!found && !name)) {
-        free(copy);
-        free(name);
-        return wb_fail_also(recording->why, WB_ERR_MEMORY, "out of memory for the meta of '%s'",
-                            recording->path);
+    size_t i = 0;
+    while (i < metas->n && strcmp(metas->items[i].key, key) != 0)
+        i++;
+    if (i == metas->n) {
+        metas->items =
+            wb_memory_room(metas->items, &metas->capacity, ++metas->n, sizeof *metas->items);
+        metas->items[i] = (struct meta){.key = wb_memory_text(key)};
     }
-    if (found) {
-        free(found->value);
-        found->value = copy;
-    } else {
-        metas->items[metas->n++] = (struct meta){.key = name, .value = copy};
-    }
-    return WB_OK;
+    free(metas->items[i].value);
+    metas->items[i].value = wb_memory_text(value);
 }
 
 /* Reads all meta values, or only that of one key, in no order. WB_ERR_DATA: some cannot be read,
@@ -516,26 +478,19 @@ static enum wb_status read_metas(struct wb_recording *recording, const char *key
 {
     struct wb_recording_cursor cursor;
     struct wb_recording_row row;
-    WB_TRY(open_rows(&cursor, recording, WB_RECORDING_META));
-    enum wb_status status = WB_OK;
-    uint64_t n_damaged = 0;
-    while (status == WB_OK && wb_recording_cursor_step(&cursor)) {
-        wb_recording_read_row(recording, WB_RECORDING_META, cursor.statement, &row);
+    WB_TRY(wb_recording_cursor_open(&cursor, recording, WB_RECORDING_META, NULL, true));
+    size_t n_damaged = 0;
+    while (wb_recording_cursor_step(&cursor)) {
+        wb_recording_read_row(&cursor, &row);
         const char *const name = text_of(&row.values[0]);
         if (recording->schema >= 2 && !row.intact)
             n_damaged++;
         else if (!key || strcmp(name, key) == 0)
-            status = add_meta(recording, metas, name, text_of(&row.values[1]));
+            add_meta(metas, name, text_of(&row.values[1]));
     }
-    if (status == WB_OK)
-        status = end_walk(recording, &cursor, "meta");
+    enum wb_status status = end_walk(recording, &cursor);
     if (status == WB_OK && n_damaged > 0)
-        status = is_first_report(recording, "meta")
-                     ? wb_fail_also(recording->why, WB_ERR_DATA,
-                                    "'%s': %llu row%s of table meta %s damaged", recording->path,
-                                    (unsigned long long)n_damaged, n_damaged == 1 ? "" : "s",
-                                    n_damaged == 1 ? "is" : "are")
-                     : WB_ERR_DATA;
+        status = report_damaged(recording, WB_RECORDING_META, n_damaged);
     wb_recording_cursor_close(&cursor);
     return status;
 }
@@ -597,43 +552,29 @@ static int compare_keys(const void *a, const void *b)
     return x->rowid < y->rowid ? -1 : x->rowid > y->rowid;
 }
 
-static enum wb_status append_key(struct keys *keys, const struct key *key, struct wb_reason *why)
-{
-    if (keys->n == keys->capacity) {
-        size_t capacity = keys->capacity ? 2 * keys->capacity : 1024;
-        struct key *larger = realloc(keys->items, capacity * sizeof *larger);
-        if (!larger)
-            return wb_fail_also(why, WB_ERR_MEMORY, "out of memory for %zu rows", capacity);
-        keys->items = larger;
-        keys->capacity = capacity;
-    }
-    keys->items[keys->n++] = *key;
-    return WB_OK;
-}
-
 /* Reads rowid, time, stream and seq of all readable rows. *end is WB_OK, or the reason why rows are
  * missing. Rows of a truncated page have no time and are skipped. */
-static enum wb_status read_keys(struct wb_recording *recording, const char *table,
+static enum wb_status read_keys(struct wb_recording *recording, enum wb_recording_kind kind,
                                 const char *columns, struct keys *keys, enum wb_status *end)
 {
     struct wb_recording_cursor cursor;
-    WB_TRY(wb_recording_cursor_open(&cursor, recording, columns, table, true));
-    enum wb_status status = WB_OK;
-    while (status == WB_OK && wb_recording_cursor_step(&cursor)) {
+    WB_TRY(wb_recording_cursor_open(&cursor, recording, kind, columns, true));
+    while (wb_recording_cursor_step(&cursor)) {
         sqlite3_stmt *const statement = cursor.statement;
-        const struct key key = {.rowid = sqlite3_column_int64(statement, 0),
-                                .t_ns = sqlite3_column_int64(statement, 1),
-                                .stream = sqlite3_column_int(statement, 2),
-                                .seq = sqlite3_column_int64(statement, 3)};
-        if (sqlite3_column_type(statement, 1) == SQLITE_INTEGER)
-            status = append_key(keys, &key, recording->why);
-        else
+        if (sqlite3_column_type(statement, 1) != SQLITE_INTEGER) {
             wb_recording_cursor_break(&cursor, SQLITE_CORRUPT);
+            continue;
+        }
+        keys->items =
+            wb_memory_room(keys->items, &keys->capacity, keys->n + 1, sizeof *keys->items);
+        keys->items[keys->n++] = (struct key){.rowid = sqlite3_column_int64(statement, 0),
+                                              .t_ns = sqlite3_column_int64(statement, 1),
+                                              .stream = sqlite3_column_int(statement, 2),
+                                              .seq = sqlite3_column_int64(statement, 3)};
     }
-    if (status == WB_OK)
-        *end = end_walk(recording, &cursor, table);
+    *end = end_walk(recording, &cursor);
     wb_recording_cursor_close(&cursor);
-    return status;
+    return WB_OK;
 }
 
 /* A table to be walked: its keys, the index of the time among a row's values, and the visitor. */
@@ -653,7 +594,7 @@ struct walk {
 static bool is_good(const struct walk *walk, const struct key *key,
                     const struct wb_recording_row *row, int schema)
 {
-    return row->values[walk->time].integer == key->t_ns &&
+    return row->number == key->rowid && row->values[walk->time].integer == key->t_ns &&
            (row->intact || walk->kind == WB_RECORDING_CHUNK || schema < 2);
 }
 
@@ -661,28 +602,25 @@ static bool is_good(const struct walk *walk, const struct key *key,
 static enum wb_status visit_rows(struct wb_recording *recording, struct walk *walk,
                                  const struct keys *keys, size_t *n_lost)
 {
-    char columns[160], sql[240];
-    sqlite3_stmt *statement = NULL;
-    wb_recording_row_columns(recording, walk->kind, columns, sizeof columns);
-    snprintf(sql, sizeof sql, "SELECT %s FROM %s WHERE rowid = ?", columns,
-             wb_recording_tables[walk->kind].name);
-    WB_TRY(prepare(recording, sql, &statement));
+    struct wb_recording_cursor cursor;
+    WB_TRY(wb_recording_cursor_open(&cursor, recording, walk->kind, NULL, true));
+    sqlite3_stmt *const statement = cursor.statement;
     enum wb_status status = WB_OK;
     for (size_t i = 0; i < keys->n && status == WB_OK; i++) {
         struct wb_recording_row row;
+        sqlite3_reset(statement);
         sqlite3_bind_int64(statement, 1, keys->items[i].rowid);
         int code = sqlite3_step(statement);
         if (code == SQLITE_ROW)
-            wb_recording_read_row(recording, walk->kind, statement, &row);
+            wb_recording_read_row(&cursor, &row);
         if (code == SQLITE_ROW && is_good(walk, &keys->items[i], &row, recording->schema))
             status = walk->row(walk, &row);
         else if ((code & 0xff) == SQLITE_NOMEM)
             status = wb_recording_fail(recording, code, "read");
         else
             ++*n_lost;
-        sqlite3_reset(statement);
     }
-    sqlite3_finalize(statement);
+    wb_recording_cursor_close(&cursor);
     return status;
 }
 
@@ -690,8 +628,7 @@ static enum wb_status walk_table(struct wb_recording *recording, struct walk *wa
 {
     struct keys keys = {0};
     enum wb_status end = WB_OK;
-    const char *const table = wb_recording_tables[walk->kind].name;
-    enum wb_status status = read_keys(recording, table, walk->keys, &keys, &end);
+    enum wb_status status = read_keys(recording, walk->kind, walk->keys, &keys, &end);
     if (status == WB_OK) {
         bool sorted = true;
         for (size_t i = 1; i < keys.n && sorted; i++)
@@ -700,14 +637,9 @@ static enum wb_status walk_table(struct wb_recording *recording, struct walk *wa
             qsort(keys.items, keys.n, sizeof keys.items[0], compare_keys);
         size_t n_lost = 0;
         status = visit_rows(recording, walk, &keys, &n_lost);
-        if (status == WB_OK && end == WB_OK && n_lost > 0) {
-            end = WB_ERR_DATA;
-            if (!recording->shortened && is_first_report(recording, table))
-                end =
-                    wb_fail_also(recording->why, WB_ERR_DATA,
-                                 "'%s': %zu row%s of table %s %s damaged", recording->path, n_lost,
-                                 n_lost == 1 ? "" : "s", table, n_lost == 1 ? "is" : "are");
-        }
+        if (status == WB_OK && end == WB_OK && n_lost > 0)
+            end =
+                recording->shortened ? WB_ERR_DATA : report_damaged(recording, walk->kind, n_lost);
     }
     free(keys.items);
     return status != WB_OK ? status : end;

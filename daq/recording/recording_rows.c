@@ -1,6 +1,5 @@
 /* Rows of recordings: columns of the tables, checksum of a row, chain of rows. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <zlib.h>
 
@@ -116,9 +115,10 @@ static int64_t read_crc32(sqlite3_stmt *statement, int column)
                : -1;
 }
 
-void wb_recording_read_row(const struct wb_recording *recording, enum wb_recording_kind kind,
-                           sqlite3_stmt *statement, struct wb_recording_row *row)
+void wb_recording_read_row(const struct wb_recording_cursor *cursor, struct wb_recording_row *row)
 {
+    const enum wb_recording_kind kind = cursor->kind;
+    sqlite3_stmt *const statement = cursor->statement;
     const char *const types = wb_recording_tables[kind].types;
     const int n = (int)strlen(types);
     *row = (struct wb_recording_row){
@@ -129,7 +129,7 @@ void wb_recording_read_row(const struct wb_recording *recording, enum wb_recordi
     row->is_nothing = n_strange == n;
     row->intact = n_strange == 0;
     row->crc32 = row->chain = -1;
-    if (recording->schema >= 2) {
+    if (cursor->recording->schema >= 2) {
         row->crc32 = read_crc32(statement, 1 + n);
         row->chain = read_crc32(statement, 2 + n);
         row->intact &= row->crc32 == wb_recording_row_crc32(kind, row->number, row->values);
@@ -138,13 +138,4 @@ void wb_recording_read_row(const struct wb_recording *recording, enum wb_recordi
         row->crc32 = read_crc32(statement, 1 + n);
         row->intact &= row->crc32 == wb_recording_crc32(bytes->bytes, bytes->n);
     }
-}
-
-void wb_recording_row_columns(const struct wb_recording *recording, enum wb_recording_kind kind,
-                              char *text, size_t size)
-{
-    snprintf(text, size, "rowid, %s%s", wb_recording_tables[kind].columns,
-             recording->schema >= 2       ? ", crc32, chain"
-             : kind == WB_RECORDING_CHUNK ? ", crc32"
-                                          : "");
 }

@@ -11,10 +11,10 @@ struct side {
     bool has_row;
 };
 
-static void step(struct side *side, enum wb_recording_kind kind)
+static void step(struct side *side)
 {
     while ((side->has_row = wb_recording_cursor_step(&side->cursor))) {
-        wb_recording_read_row(side->cursor.recording, kind, side->cursor.statement, &side->row);
+        wb_recording_read_row(&side->cursor, &side->row);
         if (!side->row.is_nothing)
             return;
         wb_recording_cursor_break(&side->cursor, SQLITE_CORRUPT);
@@ -45,17 +45,15 @@ enum wb_status wb_recording_scan(struct wb_recording *recording,
     enum wb_status status = WB_OK;
     *broken = false;
     for (int i = 0; i < WB_RECORDING_TABLES; i++) {
-        char columns[160];
-        wb_recording_row_columns(recording, (enum wb_recording_kind)i, columns, sizeof columns);
-        if (wb_recording_cursor_open(&sides[i].cursor, recording, columns,
-                                     wb_recording_tables[i].name, false) == WB_ERR_MEMORY)
+        if (wb_recording_cursor_open(&sides[i].cursor, recording, (enum wb_recording_kind)i, NULL,
+                                     false) == WB_ERR_MEMORY)
             status = WB_ERR_MEMORY;
-        step(&sides[i], (enum wb_recording_kind)i);
+        step(&sides[i]);
     }
     int next;
     while (status == WB_OK && (next = find_next(sides, recording->schema)) < WB_RECORDING_TABLES) {
         status = visit(context, &sides[next].row);
-        step(&sides[next], (enum wb_recording_kind)next);
+        step(&sides[next]);
     }
     for (int i = 0; i < WB_RECORDING_TABLES; i++) {
         if (status == WB_OK && (sides[i].cursor.code & 0xff) == SQLITE_NOMEM)
