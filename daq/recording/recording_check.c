@@ -14,8 +14,7 @@ struct checking {
     struct wb_hash *digest; /* of all rows so far */
 };
 
-/* Appends to a list of places, or "..." once the list is full. */
-static void add_place(char *places, size_t size, const char *place)
+void wb_recording_add_place(char *places, size_t size, const char *place)
 {
     const size_t n = strlen(places);
     if (n + strlen(place) + 8 < size)
@@ -52,7 +51,7 @@ static void note_lost(struct wb_recording_check *check, int64_t first, int64_t l
     else
         snprintf(place, sizeof place, "rows %" PRId64 " to %" PRId64, first, last);
     check->lost += (uint64_t)(last - first + 1);
-    add_place(check->lost_where, sizeof check->lost_where, place);
+    wb_recording_add_place(check->lost_where, sizeof check->lost_where, place);
 }
 
 static bool is_digest(const struct wb_recording_row *row)
@@ -82,7 +81,7 @@ static enum wb_status check_row(void *context, const struct wb_recording_row *ro
     describe(row, place, sizeof place);
     if (!row->intact) {
         check->damaged++;
-        add_place(check->damaged_where, sizeof check->damaged_where, place);
+        wb_recording_add_place(check->damaged_where, sizeof check->damaged_where, place);
     }
     if (!check->is_protected)
         return WB_OK;
@@ -99,7 +98,7 @@ static enum wb_status check_row(void *context, const struct wb_recording_row *ro
         note_lost(check, checking->last + 1, row->number - 1);
     if (row->number <= checking->last || (follows && row->intact && !fits)) {
         check->displaced++;
-        add_place(check->displaced_where, sizeof check->displaced_where, place);
+        wb_recording_add_place(check->displaced_where, sizeof check->displaced_where, place);
     }
     check->after_digest += check->is_closed;
     if (row->intact && is_digest(row))

@@ -114,6 +114,9 @@ wb_recording_scan(struct wb_recording *recording,
                   enum wb_status (*visit)(void *context, const struct wb_recording_row *row),
                   void *context, bool *broken);
 
+/* Appends to a list of places, or "..." once the list is full. */
+void wb_recording_add_place(char *places, size_t size, const char *place);
+
 /* --- the recording --- */
 
 struct wb_recording {

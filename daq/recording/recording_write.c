@@ -34,33 +34,30 @@ static const char schema[] =
 
 enum wb_status wb_recording_fail(const struct wb_recording *recording, int code, const char *doing)
 {
-    const char *path = recording->path;
+    static const struct {
+        int code;
+        enum wb_status status;
+        const char *problem;
+    } causes[] = {
+        {SQLITE_FULL, WB_ERR_IO, "the disk is full"},
+        {SQLITE_NOMEM, WB_ERR_MEMORY, "out of memory"},
+        {SQLITE_CORRUPT, WB_ERR_DATA, "the database is damaged"},
+        {SQLITE_NOTADB, WB_ERR_DATA, "the database is damaged"},
+        {SQLITE_BUSY, WB_ERR_BUSY, "it is locked by another program"},
+        {SQLITE_LOCKED, WB_ERR_BUSY, "it is locked by another program"},
+        {SQLITE_READONLY, WB_ERR_PERMISSION, "no permission"},
+        {SQLITE_PERM, WB_ERR_PERMISSION, "no permission"},
+        {SQLITE_AUTH, WB_ERR_PERMISSION, "no permission"},
+    };
+    const char *const path = recording->path;
     /* SQLite stores the system's error code for some failures only; for others errno has it. */
     int error = recording->db ? sqlite3_system_errno(recording->db) : 0;
     if (error == 0)
         error = errno;
-    switch (code & 0xff) {
-    case SQLITE_FULL:
-        return wb_fail_also(recording->why, WB_ERR_IO, "'%s': cannot %s: the disk is full", path,
-                            doing);
-    case SQLITE_NOMEM:
-        return wb_fail_also(recording->why, WB_ERR_MEMORY, "'%s': cannot %s: out of memory", path,
-                            doing);
-    case SQLITE_CORRUPT:
-    case SQLITE_NOTADB:
-        return wb_fail_also(recording->why, WB_ERR_DATA, "'%s': cannot %s: the database is damaged",
-                            path, doing);
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED:
-        return wb_fail_also(recording->why, WB_ERR_BUSY,
-                            "'%s': cannot %s: it is locked by another program", path, doing);
-    case SQLITE_READONLY:
-    case SQLITE_PERM:
-    case SQLITE_AUTH:
-        return wb_fail_also(recording->why, WB_ERR_PERMISSION, "'%s': cannot %s: no permission",
-                            path, doing);
-    default:
-        break;
+    for (size_t i = 0; i < sizeof causes / sizeof causes[0]; i++) {
+        if (causes[i].code == (code & 0xff))
+            return wb_fail_also(recording->why, causes[i].status, "'%s': cannot %s: %s", path,
+                                doing, causes[i].problem);
     }
     if (error == EFBIG)
         return wb_fail_also(recording->why, WB_ERR_IO,

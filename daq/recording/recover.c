@@ -61,6 +61,22 @@ struct recovery {
 
 /* --- reading the source --- */
 
+/* A truncated file is decompressed as far as possible. */
+static enum wb_status map_decompressed(struct recovery *r, int from)
+{
+    char temporary[WB_PATH];
+    int to;
+    bool whole;
+    unmap(&r->file);
+    WB_TRY(wb_recording_temporary(temporary, sizeof temporary, &to, r->why));
+    unlink(temporary);
+    enum wb_status status = wb_recording_decompress(from, to, r->from, &whole, r->why);
+    if (status == WB_OK)
+        status = map(to, r->from, &r->file, r->why);
+    close(to);
+    return status;
+}
+
 static enum wb_status open_file(struct recovery *r)
 {
     const int descriptor = open(r->from, O_RDONLY | O_CLOEXEC);
@@ -68,27 +84,9 @@ static enum wb_status open_file(struct recovery *r)
         return wb_fail_to(r->why, errno == ENOENT ? WB_ERR_NOT_FOUND : WB_ERR_IO,
                           "cannot open '%s': %s", r->from, strerror(errno));
     enum wb_status status = map(descriptor, r->from, &r->file, r->why);
+    if (status == WB_OK && wb_recording_is_zstd(r->file.at, r->file.n))
+        status = map_decompressed(r, descriptor);
     close(descriptor);
-    if (status != WB_OK || !wb_recording_is_zstd(r->file.at, r->file.n))
-        return status;
-    /* A truncated file is decompressed as far as possible. */
-    char temporary[WB_PATH];
-    int from = open(r->from, O_RDONLY | O_CLOEXEC), to = -1;
-    bool whole;
-    unmap(&r->file);
-    status = from < 0
-                 ? wb_fail_to(r->why, WB_ERR_IO, "cannot open '%s': %s", r->from, strerror(errno))
-                 : wb_recording_temporary(temporary, sizeof temporary, &to, r->why);
-    if (status == WB_OK) {
-        unlink(temporary);
-        status = wb_recording_decompress(from, to, r->from, &whole, r->why);
-    }
-    if (status == WB_OK)
-        status = map(to, r->from, &r->file, r->why);
-    if (from >= 0)
-        close(from);
-    if (to >= 0)
-        close(to);
     return status;
 }
 
@@ -118,15 +116,11 @@ static bool is_key(const struct wb_recording_row *row, const char *key)
 
 static void note_missing(struct wb_recover *found, int64_t first, int64_t last)
 {
-    const size_t n = strlen(found->missing_where), size = sizeof found->missing_where;
     char place[64];
     snprintf(place, sizeof place, first == last ? "%" PRId64 : "%" PRId64 " to %" PRId64, first,
              last);
     found->missing += (uint64_t)(last - first) + 1;
-    if (n + strlen(place) + 8 < size)
-        snprintf(found->missing_where + n, size - n, "%s%s", n ? ", " : "", place);
-    else if (n >= 3 && strcmp(found->missing_where + n - 3, "...") != 0 && n + 6 < size)
-        snprintf(found->missing_where + n, size - n, ", ...");
+    wb_recording_add_place(found->missing_where, sizeof found->missing_where, place);
 }
 
 static void note_chunk(struct wb_recover *found, const struct wb_recording_row *row)
@@ -184,11 +178,6 @@ static enum wb_status take_salvage(struct recovery *r, struct wb_recording_salva
     return WB_OK;
 }
 
-static enum wb_status copy(const struct bytes *bytes, const char *path)
-{
-    return wb_file_write(path, bytes->at, bytes->n);
-}
-
 /* Takes the rows of schema 1, which have no checksum that identifies them in a damaged file: SQLite
  * reads them from a copy. */
 static enum wb_status take_old(struct recovery *r)
@@ -201,9 +190,9 @@ static enum wb_status take_old(struct recovery *r)
     close(descriptor);
     snprintf(log, sizeof log, "%s-wal", path);
     snprintf(index, sizeof index, "%s-shm", path);
-    enum wb_status status = copy(&r->file, path);
+    enum wb_status status = wb_file_write(path, r->file.at, r->file.n);
     if (status == WB_OK && r->log.n > 0)
-        status = copy(&r->log, log);
+        status = wb_file_write(log, r->log.at, r->log.n);
     if (status == WB_OK && wb_recording_open_with_reason(&old, path, &reason) != WB_OK)
         status = wb_fail_to(r->why, WB_ERR_FORMAT,
                             "'%s' contains no row of a recording: it is not a recording, or it is "

@@ -114,7 +114,6 @@ static void count_dropped(struct wb_writer *writer, const struct entry *entry)
 {
     writer->dropped[entry->stream]++;
     writer->counts.dropped_chunks++;
-    writer->counts.dropped_bytes += entry->n;
 }
 
 /* Makes an entry of two texts, the second truncated to `most`; NULL: out of memory. */
@@ -406,8 +405,7 @@ static void append(struct wb_writer *writer, struct entry *entry)
         writer->first = entry;
     writer->last = entry;
     count_waiting(writer, entry);
-    if (writer->waiting_bytes >= writer->settings.capacity_bytes / 4 ||
-        writer->waiting_entries >= writer->settings.capacity_entries / 4)
+    if (is_urgent(writer))
         pthread_cond_signal(&writer->wake);
 }
 
@@ -435,10 +433,15 @@ static bool known_stream(const struct wb_writer *writer, int stream)
     return false;
 }
 
-/* Queues the entry, or frees it and counts the loss if the queue is full. `entry` is NULL if it
- * could not be allocated; `like` then describes the loss. */
-static bool offer(struct wb_writer *writer, struct entry *entry, const struct entry *like)
+/* Queues a copy of the entry with its bytes, or counts the loss if the queue is full or memory runs
+ * out. */
+static bool offer(struct wb_writer *writer, const struct entry *like, const void *bytes)
 {
+    struct entry *const entry = malloc(sizeof *entry + like->n);
+    if (entry) {
+        *entry = *like;
+        memcpy(entry->bytes, bytes, like->n);
+    }
     pthread_mutex_lock(&writer->lock);
     const bool taken = entry && has_room(writer, like->n);
     if (taken && like->kind == ENTRY_CHUNK) {
@@ -465,28 +468,18 @@ bool wb_writer_push_chunk(struct wb_writer *writer, int stream, int64_t t_ns, co
                                .seq = writer->next_seq[stream]++,
                                .t_ns = t_ns,
                                .n = n};
-    struct entry *entry = malloc(sizeof *entry + n);
-    if (entry)
-        *entry = like;
-    if (entry && n)
-        memcpy(entry->bytes, bytes, n);
-    return offer(writer, entry, &like);
+    return offer(writer, &like, n ? bytes : "");
 }
 
 bool wb_writer_push_clock(struct wb_writer *writer, int stream, int64_t t_host_ns, double t_device,
                           int64_t rtt_ns)
 {
-    if (!known_stream(writer, stream))
-        return false;
     const struct entry like = {.kind = ENTRY_CLOCK,
                                .stream = stream,
                                .t_ns = t_host_ns,
                                .t_device = t_device,
                                .rtt_ns = rtt_ns};
-    struct entry *entry = malloc(sizeof *entry);
-    if (entry)
-        *entry = like;
-    return offer(writer, entry, &like);
+    return known_stream(writer, stream) && offer(writer, &like, "");
 }
 
 /* Queues events and meta values even if the queue is full: they are few and important. */

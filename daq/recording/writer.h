@@ -43,7 +43,7 @@ struct wb_writer_settings {
 
 struct wb_writer_counts {
     uint64_t chunks, bytes; /* accepted into the queue */
-    uint64_t dropped_chunks, dropped_bytes, dropped_probes;
+    uint64_t dropped_chunks, dropped_probes;
     uint64_t most_waiting_bytes; /* largest size of the queue so far */
 };
 
