@@ -76,12 +76,31 @@ struct wb_acquisition {
     uint8_t buffer[WB_STREAM_READ_MAX];
 };
 
-/* Records an event, if there is a recording. */
-static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind, const char *text)
+static void push_text(struct wb_acquisition *a, int64_t t_ns, const char *kind, const char *format,
+                      va_list arguments)
 {
+    char text[sizeof((struct wb_event *)0)->text];
+    vsnprintf(text, sizeof text, format, arguments);
     if (a->writer)
         wb_writer_push_event(a->writer, t_ns, kind, text);
 }
+
+/* Records an event, if there is a recording. */
+static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind, const char *format,
+                       ...) __attribute__((format(printf, 4, 5)));
+
+static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind, const char *format,
+                       ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    push_text(a, t_ns, kind, format, arguments);
+    va_end(arguments);
+}
+
+/* Records an event and warns with the same text. */
+#define REPORT(a, t_ns, kind, ...)                                                                 \
+    (push_event((a), (t_ns), (kind), __VA_ARGS__), wb_warn(__VA_ARGS__))
 
 void wb_acquisition_raise_priority(void)
 {
@@ -96,12 +115,10 @@ bool wb_acquisition_marker_measured(const struct wb_marker *marker)
 
 void wb_acquisition_event(struct wb_acquisition *a, const char *kind, const char *format, ...)
 {
-    char text[sizeof((struct wb_event *)0)->text];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    push_text(a, wb_time_now_ns(), kind, format, arguments);
     va_end(arguments);
-    push_event(a, wb_time_now_ns(), kind, text);
 }
 
 /* --- sending --- */
@@ -195,16 +212,13 @@ static void hold_now(struct wb_acquisition *a)
     if (stage && a->latest.stream[WB_ROLE_STAGE].gone && a->moving)
         wb_stop_settle(&a->stop, WB_STOP_FAILED, now_ns);
     if (a->interlock.reason != WB_INTERLOCK_INTERRUPT)
-        push_event(a, a->interlock.t_ns, "limit", a->interlock.text);
-    char text[200];
-    if (stage && a->moving && status == WB_OK) {
-        snprintf(text, sizeof text, "{\"reason\": \"%s\", \"latency_ms\": %.3f}",
-                 wb_interlock_reason_name(a->interlock.reason),
-                 (double)(now_ns - a->interlock.t_ns) / 1e6);
-        push_event(a, now_ns, "hold", text);
-    } else if (stage && a->moving) {
+        push_event(a, a->interlock.t_ns, "limit", "%s", a->interlock.text);
+    if (stage && a->moving && status == WB_OK)
+        push_event(a, now_ns, "hold", "{\"reason\": \"%s\", \"latency_ms\": %.3f}",
+                   wb_interlock_reason_name(a->interlock.reason),
+                   (double)(now_ns - a->interlock.t_ns) / 1e6);
+    else if (stage && a->moving)
         push_event(a, now_ns, "hold", "the hold byte could not be sent to the stage");
-    }
 }
 
 /* Records the result of a completed stop, once. */
@@ -215,13 +229,12 @@ static void report_stop(struct wb_acquisition *a)
     a->reported_stop = a->stop.state;
     if (!a->moving)
         return;
-    char text[200];
     if (a->stop.state == WB_STOP_STANDING) {
-        snprintf(text, sizeof text, "{\"confirmed_ms\": %.3f, \"soft_reset\": %s}",
-                 (double)(a->stop.confirmed_ns - a->stop.hold_ns) / 1e6,
-                 a->stop.reset_ns ? "true" : "false");
         a->moving = false;
-        push_event(a, a->stop.confirmed_ns, "stopped", text);
+        push_event(a, a->stop.confirmed_ns, "stopped",
+                   "{\"confirmed_ms\": %.3f, \"soft_reset\": %s}",
+                   (double)(a->stop.confirmed_ns - a->stop.hold_ns) / 1e6,
+                   a->stop.reset_ns ? "true" : "false");
     } else {
         push_event(a, a->stop.confirmed_ns, "stopped",
                    "not confirmed: the stage may still be moving");
@@ -261,7 +274,7 @@ static void follow_stop(struct wb_acquisition *a, int64_t now_ns)
 void wb_acquisition_stop(struct wb_acquisition *a, enum wb_interlock_reason reason,
                          const char *text)
 {
-    if (wb_interlock_trip(&a->interlock, reason, wb_time_now_ns(), text))
+    if (wb_interlock_trip(&a->interlock, reason, wb_time_now_ns(), "%s", text))
         hold_now(a);
 }
 
@@ -281,8 +294,7 @@ void wb_acquisition_clear_stop(struct wb_acquisition *a)
 void wb_acquisition_arm(struct wb_acquisition *a, const struct wb_interlock_settings *settings,
                         double start_position)
 {
-    const enum wb_interlock_reason reason = a->interlock.reason;
-    if (reason != WB_INTERLOCK_NONE)
+    if (a->interlock.reason != WB_INTERLOCK_NONE)
         return;
     wb_interlock_init(&a->interlock, settings, wb_time_now_ns());
     a->interlock.armed = true;
@@ -381,7 +393,6 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
     a->latest.stream[WB_ROLE_MOCAP].samples++;
     line->counted++;
     a->latest.has_mocap = true;
-    a->latest.mocap_ns = frame->t_ns;
     a->latest.markers_seen = 0;
     for (int i = 0; i < frame->n_markers; i++)
         if (wb_acquisition_marker_measured(&frame->markers[i]))
@@ -435,15 +446,12 @@ static void on_remark(void *context, enum wb_log_level level, int64_t t_ns, cons
         snprintf(a->latest.stage_error, sizeof a->latest.stage_error, "%s", text);
     unsigned held;
     const bool store = wb_remark_gate_store(&line->gate, t_ns, &held);
-    if (held > 0) {
-        char more[96];
-        snprintf(more, sizeof more,
-                 "%u more remarks on the %s stream within the same second were not stored", held,
-                 wb_role_name(line->role));
-        push_event(a, t_ns, "remarks", more);
-    }
+    if (held > 0)
+        push_event(a, t_ns, "remarks",
+                   "%u more remarks on the %s stream within the same second were not stored", held,
+                   wb_role_name(line->role));
     if (store)
-        push_event(a, t_ns, kind, text);
+        push_event(a, t_ns, kind, "%s", text);
     /* All remarks are recorded; only warnings are also shown to the operator. */
     if (level > WB_LOG_WARNING)
         wb_debug("%s: %s", wb_role_name(line->role), text);
@@ -458,14 +466,11 @@ static void note_kernel_drops(struct line *line, int64_t t_ns)
     const uint64_t drops = wb_stream_kernel_drops(line->stream);
     if (drops == line->kernel_drops)
         return;
-    char text[120];
-    snprintf(text, sizeof text,
-             "the %s stream lost %" PRIu64
-             " datagrams that this computer did not read in time: close other programs",
-             wb_role_name(line->role), drops - line->kernel_drops);
+    REPORT(line->owner, t_ns, "drop",
+           "the %s stream lost %" PRIu64
+           " datagrams that this computer did not read in time: close other programs",
+           wb_role_name(line->role), drops - line->kernel_drops);
     line->kernel_drops = drops;
-    push_event(line->owner, t_ns, "drop", text);
-    wb_warn("%s", text);
 }
 
 static struct wb_sink sink_of(struct line *line)
@@ -525,7 +530,7 @@ static void report_caution(const struct line *line, int64_t now_ns)
     if (!caution[0])
         return;
     wb_warn("%s: %s", wb_role_name(line->role), caution);
-    push_event(line->owner, now_ns, "latency", caution);
+    push_event(line->owner, now_ns, "latency", "%s", caution);
 }
 
 /* Tries to reopen the disconnected port of a load cell and starts the instrument again. An empty
@@ -539,13 +544,10 @@ static void try_to_reopen(struct line *line, int64_t now_ns)
     line->reopen_ns = now_ns + REOPEN_NS;
     if (!wb_stream_reopen(line->stream))
         return;
-    char text[240];
-    snprintf(text, sizeof text,
-             "the load cell's port was reconnected after %.2f s: after a loss of power the "
-             "indicator has a different zero; check the force at the end of the test",
-             wb_seconds_from_ns(now_ns - line->gone_ns));
-    push_event(a, now_ns, "reconnected", text);
-    wb_warn("%s", text);
+    REPORT(a, now_ns, "reconnected",
+           "the load cell's port was reconnected after %.2f s: after a loss of power the "
+           "indicator has a different zero; check the force at the end of the test",
+           wb_seconds_from_ns(now_ns - line->gone_ns));
     a->latest.stream[line->role].gone = false;
     line->write_again_ns = 0;
     report_caution(line, now_ns);
@@ -580,7 +582,6 @@ static void report_loss(struct line *line, int64_t now_ns)
 {
     const struct wb_acquisition_stream_state *const state = &line->owner->latest.stream[line->role];
     const char *const name = wb_role_name(line->role);
-    char text[160];
     if (!state->is_losing)
         line->losing_ns = 0;
     else if (line->losing_ns == 0)
@@ -588,9 +589,8 @@ static void report_loss(struct line *line, int64_t now_ns)
     if (line->losing_ns == 0 || now_ns - line->losing_ns < LASTING_LOSS_NS || line->reported_loss)
         return;
     line->reported_loss = true;
-    snprintf(text, sizeof text, "%s: %" PRIu64 " of %" PRIu64 " samples did not arrive", name,
-             state->loss.missing, state->loss.received + state->loss.missing);
-    push_event(line->owner, now_ns, "loss", text);
+    push_event(line->owner, now_ns, "loss", "%s: %" PRIu64 " of %" PRIu64 " samples did not arrive",
+               name, state->loss.missing, state->loss.received + state->loss.missing);
     wb_warn("samples of the %s stream are lost between instrument and computer: %" PRIu64 " so far",
             name, state->loss.missing);
 }
@@ -602,7 +602,8 @@ static void note_losses(struct wb_acquisition *a, int64_t now_ns)
         struct wb_acquisition_stream_state *const state = &a->latest.stream[line->role];
         const bool lost = a->interlock.lost[line->role] || state->gone;
         if (lost != line->reported_lost) {
-            push_event(a, now_ns, lost ? "stream_lost" : "stream_found", wb_role_name(line->role));
+            push_event(a, now_ns, lost ? "stream_lost" : "stream_found", "%s",
+                       wb_role_name(line->role));
             /* A disconnected device has been reported already. */
             if (lost && !state->gone)
                 wb_warn("the %s stream is lost: no valid data arrive from %s",
@@ -651,23 +652,17 @@ static void watch_storage(struct wb_acquisition *a, int64_t now_ns)
     struct wb_writer_state *const state = &a->latest.storage;
     wb_writer_state(a->writer, state);
     const bool late = state->failing != WB_OK || state->lag_ns > STORAGE_LAG_NS;
+    const char *const problem =
+        state->failing != WB_OK ? "nothing can be written to the disk" : "the disk is too slow";
     if (late && !a->latest.is_storage_late) {
         a->storage_ns = now_ns - state->lag_ns;
-        push_event(a, now_ns, "storage",
-                   state->failing != WB_OK
-                       ? "nothing can be written to the disk; new data are kept in memory"
-                       : "the disk is too slow; new data are kept in memory");
-        wb_warn("%s: the data of the last %.1f s are in memory only%s",
-                state->failing != WB_OK ? "nothing can be written to the disk"
-                                        : "the disk is too slow",
+        push_event(a, now_ns, "storage", "%s; new data are kept in memory", problem);
+        wb_warn("%s: the data of the last %.1f s are in memory only%s", problem,
                 wb_seconds_from_ns(state->lag_ns),
                 state->failing != WB_OK ? "; make room on the disk during the test" : "");
     } else if (!late && a->latest.is_storage_late) {
-        char text[120];
-        snprintf(text, sizeof text, "all data are on the disk again after %.1f s",
-                 wb_seconds_from_ns(now_ns - a->storage_ns));
-        push_event(a, now_ns, "storage", text);
-        wb_warn("%s", text);
+        REPORT(a, now_ns, "storage", "all data are on the disk again after %.1f s",
+               wb_seconds_from_ns(now_ns - a->storage_ns));
     }
     a->latest.is_storage_late = late;
 }
@@ -730,12 +725,9 @@ static void discount_stall(struct wb_acquisition *a, int64_t stalled_ns)
     wb_interlock_discount(&a->interlock, stalled_ns);
     if (stalled_ns < REPORTED_STALL_NS || !a->interlock.armed)
         return;
-    char text[160];
-    snprintf(text, sizeof text,
-             "the recorder was stalled for %.1f s: no limit was checked in that time",
-             wb_seconds_from_ns(stalled_ns));
-    push_event(a, wb_time_now_ns(), "stall", text);
-    wb_warn("%s", text);
+    REPORT(a, wb_time_now_ns(), "stall",
+           "the recorder was stalled for %.1f s: no limit was checked in that time",
+           wb_seconds_from_ns(stalled_ns));
 }
 
 static int64_t earlier(int64_t a, int64_t b)
@@ -873,8 +865,9 @@ static enum wb_status open_lines(struct wb_acquisition *a, unsigned roles, struc
     return first;
 }
 
-static enum wb_status create(struct wb_acquisition **out, const struct wb_rig *rig,
-                             const struct wb_sink *sink)
+enum wb_status wb_acquisition_open_each(struct wb_acquisition **out, const struct wb_rig *rig,
+                                        unsigned roles, const struct wb_sink *sink,
+                                        struct wb_reason why[WB_INTERLOCK_ROLES])
 {
     struct wb_acquisition *const a = calloc(1, sizeof *a);
     if (!a)
@@ -882,36 +875,19 @@ static enum wb_status create(struct wb_acquisition **out, const struct wb_rig *r
     a->rig = *rig;
     if (sink)
         a->sinks[0] = *sink;
-    *out = a;
-    return WB_OK;
+    const enum wb_status status = open_lines(a, roles, why);
+    if (status == WB_OK || (why && status != WB_ERR_MEMORY)) {
+        *out = a;
+        return WB_OK;
+    }
+    wb_acquisition_close(a);
+    return why ? wb_fail(status, "out of memory for the acquisition") : status;
 }
 
 enum wb_status wb_acquisition_open(struct wb_acquisition **out, const struct wb_rig *rig,
                                    unsigned roles, const struct wb_sink *sink)
 {
-    struct wb_acquisition *a;
-    WB_TRY(create(&a, rig, sink));
-    const enum wb_status status = open_lines(a, roles, NULL);
-    if (status != WB_OK) {
-        wb_acquisition_close(a);
-        return status;
-    }
-    *out = a;
-    return WB_OK;
-}
-
-enum wb_status wb_acquisition_open_each(struct wb_acquisition **out, const struct wb_rig *rig,
-                                        unsigned roles, const struct wb_sink *sink,
-                                        struct wb_reason why[WB_INTERLOCK_ROLES])
-{
-    struct wb_acquisition *a;
-    WB_TRY(create(&a, rig, sink));
-    if (open_lines(a, roles, why) == WB_ERR_MEMORY) {
-        wb_acquisition_close(a);
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the acquisition");
-    }
-    *out = a;
-    return WB_OK;
+    return wb_acquisition_open_each(out, rig, roles, sink, NULL);
 }
 
 void wb_acquisition_add_sink(struct wb_acquisition *a, const struct wb_sink *sink)

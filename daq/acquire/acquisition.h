@@ -123,7 +123,6 @@ struct wb_acquisition_latest {
     struct wb_load_sample load; /* the last valid reading */
     bool unit_contradicts;      /* of the last reading, valid or not: see sample.h */
     int markers_seen;           /* measured markers in the last frame */
-    int64_t mocap_ns;           /* arrival of the last frame */
     struct wb_stage_report stage;
     uint64_t stage_reports;
     bool has_settings;

@@ -55,12 +55,8 @@ void wb_interlock_init(struct wb_interlock *interlock, const struct wb_interlock
         interlock->last_ns[role] = now_ns;
 }
 
-/* Only the first trip has an effect. */
-static bool trip(struct wb_interlock *interlock, enum wb_interlock_reason reason, int64_t t_ns,
-                 const char *format, ...) __attribute__((format(printf, 4, 5)));
-
-static bool trip(struct wb_interlock *interlock, enum wb_interlock_reason reason, int64_t t_ns,
-                 const char *format, ...)
+bool wb_interlock_trip(struct wb_interlock *interlock, enum wb_interlock_reason reason,
+                       int64_t t_ns, const char *format, ...)
 {
     if (interlock->reason != WB_INTERLOCK_NONE)
         return false;
@@ -71,12 +67,6 @@ static bool trip(struct wb_interlock *interlock, enum wb_interlock_reason reason
     vsnprintf(interlock->text, sizeof interlock->text, format, arguments);
     va_end(arguments);
     return true;
-}
-
-bool wb_interlock_trip(struct wb_interlock *interlock, enum wb_interlock_reason reason,
-                       int64_t t_ns, const char *text)
-{
-    return trip(interlock, reason, t_ns, "%s", text);
 }
 
 static void renew(struct wb_interlock *interlock, enum wb_role role, int64_t t_ns)
@@ -95,26 +85,29 @@ bool wb_interlock_load(struct wb_interlock *interlock, const struct wb_load_samp
         return false;
     /* Checked before the overload, which may be an artefact of a wrong unit. */
     if (sample->unit_changed)
-        return trip(interlock, WB_INTERLOCK_UNIT, sample->t_ns,
-                    "the load cell changed its unit during the test: restore the previous unit");
+        return wb_interlock_trip(
+            interlock, WB_INTERLOCK_UNIT, sample->t_ns,
+            "the load cell changed its unit during the test: restore the previous unit");
     /* While a loaded specimen is released, the unit of the line is accepted. */
     if (sample->unit_contradicts && !limit->overload_allowed)
-        return trip(interlock, WB_INTERLOCK_UNIT, sample->t_ns,
-                    "the unit that the load cell prints is not load_cell.unit of the rig file: "
-                    "correct one of them");
+        return wb_interlock_trip(
+            interlock, WB_INTERLOCK_UNIT, sample->t_ns,
+            "the unit that the load cell prints is not load_cell.unit of the rig file: "
+            "correct one of them");
     if (sample->overload && !limit->overload_allowed)
-        return trip(interlock, WB_INTERLOCK_OVERLOAD, sample->t_ns,
-                    "the load cell reports overload: the load exceeds its range");
+        return wb_interlock_trip(interlock, WB_INTERLOCK_OVERLOAD, sample->t_ns,
+                                 "the load cell reports overload: the load exceeds its range");
     if (!sample->valid)
         return false;
     if (limit->overload > 0.0 && !(fabs(sample->force) <= limit->overload))
-        return trip(interlock, WB_INTERLOCK_OVERLOAD, sample->t_ns,
-                    "the load cell reads %.1f mN, beyond its overload limit of %.1f mN",
-                    sample->force / WB_MN, limit->overload / WB_MN);
+        return wb_interlock_trip(
+            interlock, WB_INTERLOCK_OVERLOAD, sample->t_ns,
+            "the load cell reads %.1f mN, beyond its overload limit of %.1f mN",
+            sample->force / WB_MN, limit->overload / WB_MN);
     if (limit->force > 0.0 && !(fabs(sample->force - interlock->tare) <= limit->force))
-        return trip(interlock, WB_INTERLOCK_FORCE, sample->t_ns,
-                    "the tension is %.1f mN, beyond the force limit of %.1f mN",
-                    (sample->force - interlock->tare) / WB_MN, limit->force / WB_MN);
+        return wb_interlock_trip(interlock, WB_INTERLOCK_FORCE, sample->t_ns,
+                                 "the tension is %.1f mN, beyond the force limit of %.1f mN",
+                                 (sample->force - interlock->tare) / WB_MN, limit->force / WB_MN);
     return false;
 }
 
@@ -132,29 +125,33 @@ bool wb_interlock_stage(struct wb_interlock *interlock, const struct wb_stage_re
     if (report->state == WB_STAGE_ALARM && limit->alarm_allowed)
         return false;
     if (report->state == WB_STAGE_ALARM && report->alarm >= WB_TIC_ALARM)
-        return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns, "the stage is in alarm: %s",
-                    wb_tic_alarm_text(report->alarm));
+        return wb_interlock_trip(interlock, WB_INTERLOCK_ALARM, report->t_ns,
+                                 "the stage is in alarm: %s", wb_tic_alarm_text(report->alarm));
     if (report->state == WB_STAGE_ALARM && report->alarm != 0)
-        return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns,
-                    "the stage raised ALARM:%d of its firmware", report->alarm);
+        return wb_interlock_trip(interlock, WB_INTERLOCK_ALARM, report->t_ns,
+                                 "the stage raised ALARM:%d of its firmware", report->alarm);
     if (report->state == WB_STAGE_ALARM)
-        return trip(interlock, WB_INTERLOCK_ALARM, report->t_ns, "the stage is in alarm");
+        return wb_interlock_trip(interlock, WB_INTERLOCK_ALARM, report->t_ns,
+                                 "the stage is in alarm");
     if (report->state == WB_STAGE_HOLD || report->state == WB_STAGE_OTHER)
-        return trip(interlock, WB_INTERLOCK_STAGE, report->t_ns,
-                    report->state == WB_STAGE_HOLD
-                        ? "the stage entered hold without a command"
-                        : "the stage left normal operation (door, check or sleep mode)");
+        return wb_interlock_trip(
+            interlock, WB_INTERLOCK_STAGE, report->t_ns,
+            report->state == WB_STAGE_HOLD
+                ? "the stage entered hold without a command"
+                : "the stage left normal operation (door, check or sleep mode)");
     const double travel = limit->down * (report->position - interlock->start_position);
     if (!isfinite(travel))
         return false;
     if (limit->travel > 0.0 && travel > limit->travel)
-        return trip(interlock, WB_INTERLOCK_TRAVEL, report->t_ns,
-                    "the stage has travelled %.2f mm, beyond the travel limit of %.2f mm",
-                    travel / WB_MM, limit->travel / WB_MM);
+        return wb_interlock_trip(
+            interlock, WB_INTERLOCK_TRAVEL, report->t_ns,
+            "the stage has travelled %.2f mm, beyond the travel limit of %.2f mm", travel / WB_MM,
+            limit->travel / WB_MM);
     if (limit->rise > 0.0 && travel < -limit->rise)
-        return trip(interlock, WB_INTERLOCK_TRAVEL, report->t_ns,
-                    "the stage is %.2f mm above its start, beyond the limit of %.2f mm",
-                    -travel / WB_MM, limit->rise / WB_MM);
+        return wb_interlock_trip(
+            interlock, WB_INTERLOCK_TRAVEL, report->t_ns,
+            "the stage is %.2f mm above its start, beyond the limit of %.2f mm", -travel / WB_MM,
+            limit->rise / WB_MM);
     return false;
 }
 
@@ -190,9 +187,10 @@ bool wb_interlock_tick(struct wb_interlock *interlock, int64_t now_ns)
         interlock->lost[role] = true;
         if (!interlock->armed)
             continue;
-        if (trip(interlock, WB_INTERLOCK_STREAM_LOST, interlock->last_ns[role] + allowed,
-                 "the %s sent no valid sample for %.2f s", names[role],
-                 wb_seconds_from_ns(now_ns - interlock->last_ns[role])))
+        if (wb_interlock_trip(interlock, WB_INTERLOCK_STREAM_LOST,
+                              interlock->last_ns[role] + allowed,
+                              "the %s sent no valid sample for %.2f s", names[role],
+                              wb_seconds_from_ns(now_ns - interlock->last_ns[role])))
             tripped = true;
     }
     if (tripped)

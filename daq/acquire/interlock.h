@@ -104,9 +104,10 @@ bool wb_interlock_expires(const struct wb_interlock *interlock, enum wb_role rol
  * found even on an overloaded computer. */
 void wb_interlock_discount(struct wb_interlock *interlock, int64_t stalled_ns);
 #define WB_INTERLOCK_DISCOUNTED_NS INT64_C(5000000000)
-/* Trips it for a reason given by the caller, armed or not. */
+/* Trips it for a reason given by the caller, armed or not. False: it has tripped before; the first
+ * reason is kept. */
 bool wb_interlock_trip(struct wb_interlock *interlock, enum wb_interlock_reason reason,
-                       int64_t t_ns, const char *text);
+                       int64_t t_ns, const char *format, ...) __attribute__((format(printf, 4, 5)));
 
 /* When the next allowed silence ends; INT64_MAX: no stream is watched. */
 int64_t wb_interlock_deadline(const struct wb_interlock *interlock);
