@@ -33,12 +33,6 @@ enum phase {
     PHASE_REST /* release: the stage stands and the load cell is read */
 };
 
-static const char *const phase_names[] = {
-    [PHASE_CONNECT] = "connecting",  [PHASE_RESET] = "resetting", [PHASE_UNLOCK] = "unlocking",
-    [PHASE_HOME] = "homing",         [PHASE_MOVE] = "moving",     [PHASE_REST] = "reading",
-    [WB_SEQUENCE_STOP] = "stopping", [WB_SEQUENCE_OVER] = "end",
-};
-
 struct wb_stage_job {
     struct wb_sequence run;
     struct wb_stage_job_request request;
@@ -487,35 +481,23 @@ static void step_stop(struct wb_stage_job *job)
     job->standing = stop->state != WB_STOP_FAILED;
 }
 
+static const struct {
+    const char *name;
+    void (*step)(struct wb_stage_job *job);
+} phases[] = {
+    [PHASE_CONNECT] = {"connecting", step_connect}, [PHASE_RESET] = {"resetting", step_reset},
+    [PHASE_UNLOCK] = {"unlocking", step_unlock},    [PHASE_HOME] = {"homing", step_home},
+    [PHASE_MOVE] = {"moving", step_move},           [PHASE_REST] = {"reading", step_rest},
+    [WB_SEQUENCE_STOP] = {"stopping", step_stop},   [WB_SEQUENCE_OVER] = {"end", NULL},
+};
+
 enum wb_sequence_end wb_stage_job_step(struct wb_stage_job *job, int64_t timeout_ns)
 {
     if (job->run.phase == WB_SEQUENCE_OVER)
         return job->run.end;
     if (!wb_sequence_wait(&job->run, timeout_ns, true))
         return WB_SEQUENCE_RUNNING;
-    switch (job->run.phase) {
-    case PHASE_CONNECT:
-        step_connect(job);
-        break;
-    case PHASE_RESET:
-        step_reset(job);
-        break;
-    case PHASE_UNLOCK:
-        step_unlock(job);
-        break;
-    case PHASE_HOME:
-        step_home(job);
-        break;
-    case PHASE_MOVE:
-        step_move(job);
-        break;
-    case PHASE_REST:
-        step_rest(job);
-        break;
-    case WB_SEQUENCE_STOP:
-        step_stop(job);
-        break;
-    }
+    phases[job->run.phase].step(job);
     return job->run.phase == WB_SEQUENCE_OVER ? job->run.end : WB_SEQUENCE_RUNNING;
 }
 
@@ -523,7 +505,7 @@ void wb_stage_job_status(const struct wb_stage_job *job, struct wb_stage_job_sta
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(job->run.acquisition);
     memset(status, 0, sizeof *status);
-    status->phase = phase_names[job->run.phase];
+    status->phase = phases[job->run.phase].name;
     status->has_force = latest->has_load;
     status->force = latest->load.force;
     status->has_position = latest->has_stage && isfinite(latest->stage.position);

@@ -72,13 +72,6 @@ struct wb_bend_test {
 /* Speeds of a stage, m/s. */
 static const double slowest = 1e-3 * WB_MM, fastest = 100.0 * WB_MM;
 
-static const char *const phase_names[] = {
-    [PHASE_CONNECT] = "connecting", [PHASE_CHECK] = "check", [PHASE_TARE] = "tare",
-    [PHASE_DOWN] = "down",          [PHASE_DWELL] = "dwell", [PHASE_UP] = "up",
-    [PHASE_REST] = "rest",          [PHASE_HELD] = "held",   [WB_SEQUENCE_STOP] = "stopping",
-    [WB_SEQUENCE_OVER] = "end",
-};
-
 static const struct wb_setting rows[] = {
     {WB_ROW_INTEGER(wb_bend_test_request, cycles, "cycles", 1, 10000, 1),
      WB_ROW_OPTION("cycles", "N", "Number of loading cycles")},
@@ -504,12 +497,33 @@ static void step_rest(struct wb_bend_test *test)
 
 /* --- hold and resume --- */
 
+static void step_held(struct wb_bend_test *test)
+{
+    wb_bend_hold_step(&test->hold, &test->run, test->request.hold_most);
+}
+
+static const struct {
+    const char *name;
+    void (*step)(struct wb_bend_test *test);
+} phases[] = {
+    [PHASE_CONNECT] = {"connecting", step_connect},
+    [PHASE_CHECK] = {"check", step_check},
+    [PHASE_TARE] = {"tare", step_tare},
+    [PHASE_DOWN] = {"down", step_down},
+    [PHASE_DWELL] = {"dwell", step_dwell},
+    [PHASE_UP] = {"up", step_up},
+    [PHASE_REST] = {"rest", step_rest},
+    [PHASE_HELD] = {"held", step_held},
+    [WB_SEQUENCE_STOP] = {"stopping", step_stop},
+    [WB_SEQUENCE_OVER] = {"end", NULL},
+};
+
 bool wb_bend_test_hold(struct wb_bend_test *test)
 {
     const int phase = test->run.phase;
     if (phase != PHASE_DOWN && phase != PHASE_DWELL && phase != PHASE_UP && phase != PHASE_REST)
         return false;
-    wb_bend_hold_begin(&test->hold, &test->run, PHASE_HELD, phase_names[phase], test->cycle,
+    wb_bend_hold_begin(&test->hold, &test->run, PHASE_HELD, phases[phase].name, test->cycle,
                        tension_now(test));
     return true;
 }
@@ -732,9 +746,6 @@ enum wb_status wb_bend_test_open(struct wb_bend_test **out,
     test->run.start_position = (double)NAN;
     test->run.remedy = "";
     const enum wb_status status = start(test, request);
-    test->request.rig_path = test->request.specimen_path = test->request.output_path = NULL;
-    test->request.specimen_text = test->request.operator_name = test->request.notes = NULL;
-    test->request.writer = NULL;
     if (status != WB_OK) {
         wb_acquisition_close(test->run.acquisition);
         free(test);
@@ -755,35 +766,7 @@ enum wb_sequence_end wb_bend_test_step(struct wb_bend_test *test, int64_t timeou
         return test->run.end;
     if (!wb_sequence_wait(&test->run, timeout_ns, test->result.started))
         return WB_SEQUENCE_RUNNING;
-    switch (test->run.phase) {
-    case PHASE_CONNECT:
-        step_connect(test);
-        break;
-    case PHASE_CHECK:
-        step_check(test);
-        break;
-    case PHASE_TARE:
-        step_tare(test);
-        break;
-    case PHASE_DOWN:
-        step_down(test);
-        break;
-    case PHASE_DWELL:
-        step_dwell(test);
-        break;
-    case PHASE_UP:
-        step_up(test);
-        break;
-    case PHASE_REST:
-        step_rest(test);
-        break;
-    case PHASE_HELD:
-        wb_bend_hold_step(&test->hold, &test->run, test->request.hold_most);
-        break;
-    case WB_SEQUENCE_STOP:
-        step_stop(test);
-        break;
-    }
+    phases[test->run.phase].step(test);
     return test->run.phase == WB_SEQUENCE_OVER ? test->run.end : WB_SEQUENCE_RUNNING;
 }
 
@@ -832,7 +815,7 @@ void wb_bend_test_status(const struct wb_bend_test *test, struct wb_bend_test_st
 {
     const struct wb_acquisition_latest *const latest = wb_acquisition_latest(test->run.acquisition);
     memset(status, 0, sizeof *status);
-    status->phase = phase_names[test->run.phase];
+    status->phase = phases[test->run.phase].name;
     status->cycle = test->cycle;
     status->cycles = test->request.cycles;
     status->has_tension = latest->has_load;
