@@ -20,14 +20,28 @@
 
 /* --- child process --- */
 
+static volatile sig_atomic_t told_to_end;
+
+static void note_end(int number)
+{
+    (void)number;
+    told_to_end = 1;
+}
+
+bool wb_live_feed_is_told_to_end(void)
+{
+    return told_to_end != 0;
+}
+
 static void become_a_view(const struct wb_live_feed *feed)
 {
     static const int ignored[] = {SIGINT, SIGQUIT, SIGTSTP, SIGTTIN, SIGTTOU, SIGPIPE};
-    static const int usual[] = {SIGTERM, SIGHUP};
+    struct sigaction action = {.sa_handler = note_end};
     for (size_t i = 0; i < sizeof ignored / sizeof ignored[0]; i++)
         signal(ignored[i], SIG_IGN);
-    for (size_t i = 0; i < sizeof usual / sizeof usual[0]; i++)
-        signal(usual[i], SIG_DFL);
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGHUP, &action, NULL);
     /* Close the recorder's ends: otherwise an earlier view would not see that the recorder ended.
      */
     for (int i = 0; i < feed->n_views; i++)

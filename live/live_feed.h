@@ -50,6 +50,9 @@ WB_MUST_CHECK enum wb_status wb_live_feed_start(struct wb_live_feed *feed,
                                                 int (*run)(int socket, void *context),
                                                 void *context, int *index);
 
+/* In a view: whether it has received SIGTERM or SIGHUP, after which it must end. */
+bool wb_live_feed_is_told_to_end(void);
+
 /* Adds a point to the curve of all views. */
 void wb_live_feed_add_point(struct wb_live_feed *feed, const struct wb_live_frame_point *point);
 

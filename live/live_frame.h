@@ -45,8 +45,7 @@ struct wb_live_frame_point {
 };
 
 struct wb_live_frame_stream {
-    double rate;        /* valid samples/s */
-    double longest_gap; /* s */
+    double rate; /* valid samples/s */
     uint64_t samples, missing, gaps, drops;
     bool is_ready, is_lost, is_gone, is_losing;
 };

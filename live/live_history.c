@@ -37,39 +37,39 @@ static bool take_frame(struct wb_live_history *history, const struct wb_live_fra
     return true;
 }
 
-/* Adds a packet; false if it is invalid. */
-static bool take(struct wb_live_history *history, const void *packet, ssize_t n)
-{
+union packet {
     struct wb_live_frame_header header;
     struct wb_live_frame frame;
     struct wb_live_frame_message message;
-    if (n < (ssize_t)sizeof header)
+};
+
+/* Adds a packet of n bytes; false if it is invalid. */
+static bool take(struct wb_live_history *history, union packet *packet, ssize_t n)
+{
+    if (n < (ssize_t)sizeof packet->header)
         return false;
-    memcpy(&header, packet, sizeof header);
-    if (wb_live_frame_is(&header, n, WB_LIVE_FRAME_STATE, sizeof frame)) {
-        memcpy(&frame, packet, sizeof frame);
-        return take_frame(history, &frame);
-    }
-    if (!wb_live_frame_is(&header, n, WB_LIVE_FRAME_MESSAGE, sizeof message))
+    if (wb_live_frame_is(&packet->header, n, WB_LIVE_FRAME_STATE, sizeof packet->frame))
+        return take_frame(history, &packet->frame);
+    if (!wb_live_frame_is(&packet->header, n, WB_LIVE_FRAME_MESSAGE, sizeof packet->message))
         return false;
-    memcpy(&message, packet, sizeof message);
-    message.text[sizeof message.text - 1] = '\0';
-    history->message[history->n_messages++ % WB_LIVE_HISTORY_MESSAGES] = message;
+    packet->message.text[sizeof packet->message.text - 1] = '\0';
+    history->message[history->n_messages++ % WB_LIVE_HISTORY_MESSAGES] = packet->message;
     return true;
 }
 
 bool wb_live_history_receive(struct wb_live_history *history, int socket)
 {
-    unsigned char packet[sizeof(struct wb_live_frame) + 1];
+    union packet packet;
     while (!history->is_bad) {
-        const ssize_t n = recv(socket, packet, sizeof packet, MSG_DONTWAIT);
+        /* MSG_TRUNC: the size of a packet that does not fit, which is then invalid. */
+        const ssize_t n = recv(socket, &packet, sizeof packet, MSG_DONTWAIT | MSG_TRUNC);
         if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
             return true;
         if (n < 0 && errno == EINTR)
             continue;
         if (n <= 0)
             return false;
-        history->is_bad = !take(history, packet, n);
+        history->is_bad = !take(history, &packet, n);
     }
     return false;
 }

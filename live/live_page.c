@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <netinet/in.h>
 #include <poll.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -15,6 +14,7 @@
 #include "base/timing.h"
 #include "base/units.h"
 #include "live/live_events.h"
+#include "live/live_feed.h"
 #include "live/live_history.h"
 #include "live/live_page_html.h"
 
@@ -44,14 +44,6 @@ struct server {
     struct client *clients;
     bool is_over; /* the recorder has ended */
 };
-
-static volatile sig_atomic_t told_to_end;
-
-static void note_end(int number)
-{
-    (void)number;
-    told_to_end = 1;
-}
 
 /* --- the port --- */
 
@@ -215,7 +207,7 @@ static void serve(struct server *server, struct MHD_Daemon *daemon, int socket)
 {
     const union MHD_DaemonInfo *const info = MHD_get_daemon_info(daemon, MHD_DAEMON_INFO_EPOLL_FD);
     int64_t end_ns = INT64_MAX;
-    while (info && !told_to_end && wb_time_now_ns() < end_ns) {
+    while (info && !wb_live_feed_is_told_to_end() && wb_time_now_ns() < end_ns) {
         struct pollfd polled[] = {{.fd = info->epoll_fd, .events = POLLIN},
                                   {.fd = server->is_over ? -1 : socket, .events = POLLIN}};
         const int64_t most_ns = (server->is_over ? 20 : 200) * WB_NS_PER_MS;
@@ -238,10 +230,6 @@ int wb_live_page_run(int socket, void *context)
 {
     const struct wb_live_page *const page = context;
     static struct server server;
-    struct sigaction action = {.sa_handler = note_end};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGTERM, &action, NULL);
-    sigaction(SIGHUP, &action, NULL);
     server.plan = page->plan;
     struct MHD_Daemon *const daemon =
         MHD_start_daemon(MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL, answer, &server,

@@ -1,5 +1,4 @@
 #include "live/live_raster.h"
-#include "live/live_raster_private.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,8 +13,9 @@ void wb_live_raster_init(struct wb_live_raster *raster, int columns, int rows, b
     raster->height = raster->rows * (is_unicode ? 4 : 2);
 }
 
-void wb_live_raster_dot(struct wb_live_raster *raster, double x, double y,
-                        enum wb_live_raster_layer layer)
+/* Sets a dot; ignored if outside the drawing or NaN. */
+static void set_dot(struct wb_live_raster *raster, double x, double y,
+                    enum wb_live_raster_layer layer)
 {
     /* Bits of the Braille patterns, by row and column of the dot (Unicode, block U+2800). */
     static const uint8_t braille[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
@@ -42,7 +42,7 @@ void wb_live_raster_line(struct wb_live_raster *raster, const double from[2], co
     const int steps = (int)ceil(longest);
     for (int i = 0; i <= steps; i += period) {
         const double part = steps > 0 ? (double)i / steps : 0.0;
-        wb_live_raster_dot(raster, from[0] + part * across, from[1] + part * up, layer);
+        set_dot(raster, from[0] + part * across, from[1] + part * up, layer);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <curses.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -44,25 +45,32 @@ void wb_live_screen_prepare(void)
 }
 
 /* Writes a text, truncated to the available columns. */
-static void put(int row, int column, int columns, int attributes, const char *text)
+static void put(int row, int column, int columns, int attributes, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+static void put(int row, int column, int columns, int attributes, const char *format, ...)
 {
+    char text[512];
     if (columns <= 0 || row < 0 || row >= LINES || column >= COLS)
         return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
     attron(attributes);
     mvaddnstr(row, column, text, columns);
     attroff(attributes);
 }
 
-static const char *number_or_dash(double value, double unit, int decimals, char text[32])
+static void number_or_dash(double value, double unit, int decimals, char text[32])
 {
     if (isfinite(value))
         snprintf(text, 32, "%.*f", decimals, value / unit);
     else
         snprintf(text, 32, "--");
-    return text;
 }
 
-static const char *clock_of(double seconds, char text[32])
+static void clock_of(double seconds, char text[32])
 {
     const long whole = isfinite(seconds) ? lround(ceil(seconds)) : 0;
     if (!isfinite(seconds))
@@ -71,7 +79,6 @@ static const char *clock_of(double seconds, char text[32])
         snprintf(text, 32, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
     else
         snprintf(text, 32, "%ld:%02ld", whole / 60, whole % 60);
-    return text;
 }
 
 /* --- title --- */
@@ -90,19 +97,23 @@ static int word_colour(enum wb_live_frame_word word)
     }
 }
 
+/* Draws the background of the title or the keys. */
+static void draw_bar(int row)
+{
+    attron(COLOR_PAIR(PAIR_TITLE));
+    mvhline(row, 0, ' ', COLS);
+    attroff(COLOR_PAIR(PAIR_TITLE));
+}
+
 static void draw_title(const struct wb_live_screen *screen)
 {
     const struct wb_live_frame *const frame = &screen->history->frame;
-    char text[256], word[64] = "connecting", clock[32];
+    char text[256] = "", word[64] = "connecting", clock[32];
     int colour = PAIR_WARN;
     const double age = wb_seconds_from_ns(wb_time_now_ns() - screen->history->frame_ns);
-    attron(COLOR_PAIR(PAIR_TITLE));
-    mvhline(0, 0, ' ', COLS);
-    attroff(COLOR_PAIR(PAIR_TITLE));
-    snprintf(text, sizeof text, " %s%s", screen->plan->is_virtual ? "VIRTUAL RIG  " : "",
-             screen->plan->title);
-    put(0, 0, COLS, COLOR_PAIR(PAIR_TITLE), text);
-    text[0] = '\0';
+    draw_bar(0);
+    put(0, 0, COLS, COLOR_PAIR(PAIR_TITLE), " %s%s",
+        screen->plan->is_virtual ? "VIRTUAL RIG  " : "", screen->plan->title);
     if (screen->history->has_frame) {
         snprintf(word, sizeof word, "%s", wb_live_frame_word(frame->word));
         colour = word_colour(frame->word);
@@ -117,8 +128,8 @@ static void draw_title(const struct wb_live_screen *screen)
             colour = PAIR_BAD;
         }
     }
-    put(1, 1, COLS - 2, COLOR_PAIR(colour) | A_BOLD, word);
-    put(1, 3 + (int)strlen(word), COLS - 4 - (int)strlen(word), A_NORMAL, text);
+    put(1, 1, COLS - 2, COLOR_PAIR(colour) | A_BOLD, "%s", word);
+    put(1, 3 + (int)strlen(word), COLS - 4 - (int)strlen(word), A_NORMAL, "%s", text);
 }
 
 /* --- charts --- */
@@ -168,12 +179,11 @@ static void draw_axes(const struct box *box, const struct wb_live_chart *chart)
     mvvline(box->row + 1, box->column + MARGIN - 1, ACS_VLINE, height);
     mvhline(box->row + 1 + height, box->column + MARGIN, ACS_HLINE, width);
     mvaddch(box->row + 1 + height, box->column + MARGIN - 1, ACS_LLCORNER);
-    put(box->row, box->column, box->columns, A_NORMAL, heading_of(box));
+    put(box->row, box->column, box->columns, A_NORMAL, "%s", heading_of(box));
     for (int i = 0; i < chart->force.n_ticks; i++) {
         const double at = wb_scale_position(&chart->force, chart->force.ticks[i]);
-        snprintf(text, sizeof text, "%*g", MARGIN - 2, chart->force.ticks[i]);
         put(box->row + height - (int)(at * (height - 1) + 0.5), box->column, MARGIN - 1, A_NORMAL,
-            text);
+            "%*g", MARGIN - 2, chart->force.ticks[i]);
     }
     int free_from = 0;
     for (int i = 0; i < chart->deflection.n_ticks; i++) {
@@ -182,7 +192,7 @@ static void draw_axes(const struct box *box, const struct wb_live_chart *chart)
         const int column = MARGIN + (int)(at * (width - 1)) - (int)strlen(text) / 2;
         if (column < free_from || column + (int)strlen(text) > box->columns)
             continue;
-        put(box->row + 2 + height, box->column + column, 12, A_NORMAL, text);
+        put(box->row + 2 + height, box->column + column, 12, A_NORMAL, "%s", text);
         free_from = column + (int)strlen(text) + 1;
     }
 }
@@ -191,7 +201,6 @@ static void draw_axes(const struct box *box, const struct wb_live_chart *chart)
 static void draw_legend(const struct wb_live_screen *screen, const struct box *box,
                         const struct wb_live_chart *chart)
 {
-    char text[64];
     int column = box->column + (int)strlen(heading_of(box)) + 2;
     const int end = box->column + box->columns;
     put(box->row, column, end - column, COLOR_PAIR(PAIR_NOW) | A_BOLD, "this cycle");
@@ -204,11 +213,9 @@ static void draw_legend(const struct wb_live_screen *screen, const struct box *b
         put(box->row, column, end - column, COLOR_PAIR(PAIR_PREDICTED), "predicted");
         column += 11;
     }
-    if (screen->plan->force_limit > 0.0) {
-        snprintf(text, sizeof text, "limit %.0f mN%s", screen->plan->force_limit / WB_MN,
-                 chart->shows_force_limit ? "" : " (above)");
-        put(box->row, column, end - column, COLOR_PAIR(PAIR_BAD), text);
-    }
+    if (screen->plan->force_limit > 0.0)
+        put(box->row, column, end - column, COLOR_PAIR(PAIR_BAD), "limit %.0f mN%s",
+            screen->plan->force_limit / WB_MN, chart->shows_force_limit ? "" : " (above)");
 }
 
 static void draw_curve(const struct wb_live_screen *screen, const struct box *box)
@@ -247,7 +254,7 @@ static void draw_shape(const struct wb_live_screen *screen, const struct box *bo
         if (row < 0 || row >= raster.rows || column < 0 || column >= raster.columns)
             continue;
         put(box->row + 1 + row, box->column + MARGIN + column, 3,
-            COLOR_PAIR(seen ? PAIR_GOOD : PAIR_BAD) | A_BOLD,
+            COLOR_PAIR(seen ? PAIR_GOOD : PAIR_BAD) | A_BOLD, "%s",
             seen ? (screen->is_unicode ? "●" : "o") : (screen->is_unicode ? "○" : "x"));
     }
 }
@@ -259,7 +266,7 @@ struct figure {
     char value[32];
 };
 
-static int get_figures(const struct wb_live_screen *screen, struct figure figures[4])
+static void get_figures(const struct wb_live_screen *screen, struct figure figures[4])
 {
     const struct wb_live_frame *const frame = &screen->history->frame;
     const double unknown = screen->history->has_frame ? 1.0 : (double)NAN;
@@ -271,30 +278,27 @@ static int get_figures(const struct wb_live_screen *screen, struct figure figure
     number_or_dash(frame->peak * unknown, WB_MN, 2, figures[1].value);
     number_or_dash(frame->deflection * unknown, WB_MM, 1, figures[2].value);
     clock_of(frame->time_left * unknown, figures[3].value);
-    return 4;
 }
 
 /* Returns the row after the figures. */
 static int draw_figures(const struct wb_live_screen *screen, const struct box *box, bool large)
 {
     struct figure figures[4];
-    char text[96], line[WB_LIVE_DIGITS_TEXT];
-    const int n = get_figures(screen, figures);
+    char line[WB_LIVE_DIGITS_TEXT];
     int row = box->row;
-    for (int i = 0; i < n; i++) {
+    get_figures(screen, figures);
+    for (int i = 0; i < 4; i++) {
         if (!large) {
-            snprintf(text, sizeof text, "%-12s %9s %s", figures[i].name, figures[i].value,
-                     figures[i].unit);
-            put(row++, box->column, box->columns, A_BOLD, text);
+            put(row++, box->column, box->columns, A_BOLD, "%-12s %9s %s", figures[i].name,
+                figures[i].value, figures[i].unit);
             continue;
         }
-        snprintf(text, sizeof text, "%s%s%s", figures[i].name, figures[i].unit[0] ? ", " : "",
-                 figures[i].unit);
-        put(row++, box->column, box->columns, A_NORMAL, text);
+        put(row++, box->column, box->columns, A_NORMAL, "%s%s%s", figures[i].name,
+            figures[i].unit[0] ? ", " : "", figures[i].unit);
         for (int k = 0; k < WB_LIVE_DIGITS_ROWS; k++) {
             wb_live_digits_row(figures[i].value, k, line);
             put(row++, box->column, WB_LIVE_DIGITS_TEXT, A_BOLD | COLOR_PAIR(i == 1 ? 0 : PAIR_NOW),
-                line);
+                "%s", line);
         }
     }
     return row + 1;
@@ -318,7 +322,8 @@ static int draw_lamps(const struct wb_live_screen *screen, const struct box *box
             column = box->column + 9;
             row++;
         }
-        put(row, column, 3, COLOR_PAIR(seen ? PAIR_GOOD : PAIR_BAD) | A_BOLD, seen ? on : off);
+        put(row, column, 3, COLOR_PAIR(seen ? PAIR_GOOD : PAIR_BAD) | A_BOLD, "%s",
+            seen ? on : off);
     }
     return row + 1;
 }
@@ -333,20 +338,19 @@ static int draw_streams(const struct wb_live_screen *screen, const struct box *b
         char text[128];
         int colour = PAIR_GOOD;
         if (!screen->history->has_frame || !stream->is_ready) {
-            snprintf(text, sizeof text, "%-8s connecting", names[role]);
+            snprintf(text, sizeof text, "connecting");
             colour = PAIR_WARN;
         } else if (stream->is_gone || stream->is_lost) {
-            snprintf(text, sizeof text, "%-8s %s", names[role],
-                     stream->is_gone ? "DISCONNECTED" : "SILENT");
+            snprintf(text, sizeof text, "%s", stream->is_gone ? "DISCONNECTED" : "SILENT");
             colour = PAIR_BAD;
         } else if (stream->gaps + stream->drops > 0) {
-            snprintf(text, sizeof text, "%-8s %.0f Hz, %" PRIu64 " gaps, %" PRIu64 " lost",
-                     names[role], stream->rate, stream->gaps, stream->missing + stream->drops);
+            snprintf(text, sizeof text, "%.0f Hz, %" PRIu64 " gaps, %" PRIu64 " lost", stream->rate,
+                     stream->gaps, stream->missing + stream->drops);
             colour = stream->is_losing || stream->drops > 0 ? PAIR_BAD : PAIR_WARN;
         } else {
-            snprintf(text, sizeof text, "%-8s %.0f Hz, no gaps", names[role], stream->rate);
+            snprintf(text, sizeof text, "%.0f Hz, no gaps", stream->rate);
         }
-        put(row, box->column, box->columns, COLOR_PAIR(colour), text);
+        put(row, box->column, box->columns, COLOR_PAIR(colour), "%-8s %s", names[role], text);
     }
     return row;
 }
@@ -356,25 +360,25 @@ static int draw_disk(const struct wb_live_screen *screen, const struct box *box,
     const struct wb_live_frame *const frame = &screen->history->frame;
     const double room_left = screen->history->disk_free;
     const double hours = screen->history->disk_left / 3600.0;
-    char text[128], room[48] = "";
-    if (isfinite(hours) && hours < 1000.0)
-        snprintf(room, sizeof room, ", for %.3g h", hours);
-    snprintf(text, sizeof text, "disk     %.3g GB free%s", room_left / 1e9, room);
+    const int room_colour = COLOR_PAIR(isfinite(hours) && hours < 1.0 ? PAIR_BAD : PAIR_GOOD);
+    const int colour =
+        COLOR_PAIR(frame->is_disk_failing || frame->is_disk_late ? PAIR_BAD : PAIR_GOOD);
     if (!isfinite(room_left))
-        snprintf(text, sizeof text, "disk     free space unknown");
-    put(row++, box->column, box->columns,
-        COLOR_PAIR(isfinite(hours) && hours < 1.0 ? PAIR_BAD : PAIR_GOOD), text);
-    if (frame->is_disk_failing)
-        snprintf(text, sizeof text, "         FAILS, memory %.0f %% full",
-                 frame->disk_fill / WB_PERCENT);
+        put(row++, box->column, box->columns, room_colour, "disk     free space unknown");
+    else if (isfinite(hours) && hours < 1000.0)
+        put(row++, box->column, box->columns, room_colour, "disk     %.3g GB free, for %.3g h",
+            room_left / 1e9, hours);
     else
-        snprintf(text, sizeof text, "         %.1f s behind", frame->disk_lag);
-    put(row++, box->column, box->columns,
-        COLOR_PAIR(frame->is_disk_failing || frame->is_disk_late ? PAIR_BAD : PAIR_GOOD), text);
-    if (frame->frames_dropped > 0) {
-        snprintf(text, sizeof text, "view     %" PRIu64 " frames not drawn", frame->frames_dropped);
-        put(row++, box->column, box->columns, COLOR_PAIR(PAIR_FAINT), text);
-    }
+        put(row++, box->column, box->columns, room_colour, "disk     %.3g GB free",
+            room_left / 1e9);
+    if (frame->is_disk_failing)
+        put(row++, box->column, box->columns, colour, "         FAILS, memory %.0f %% full",
+            frame->disk_fill / WB_PERCENT);
+    else
+        put(row++, box->column, box->columns, colour, "         %.1f s behind", frame->disk_lag);
+    if (frame->frames_dropped > 0)
+        put(row++, box->column, box->columns, COLOR_PAIR(PAIR_FAINT),
+            "view     %" PRIu64 " frames not drawn", frame->frames_dropped);
     return row;
 }
 
@@ -388,7 +392,7 @@ static void draw_messages(const struct wb_live_screen *screen, const struct box 
     const int most = box->rows - has_end;
     int first = history->n_messages - most, row = box->row;
     if (has_end)
-        put(row++, 1, COLS - 2, COLOR_PAIR(word_colour(frame->word)) | A_BOLD, frame->text);
+        put(row++, 1, COLS - 2, COLOR_PAIR(word_colour(frame->word)) | A_BOLD, "%s", frame->text);
     if (first < 0)
         first = 0;
     for (int i = first; i < history->n_messages; i++, row++) {
@@ -397,24 +401,18 @@ static void draw_messages(const struct wb_live_screen *screen, const struct box 
         const int colour = message->level == WB_LOG_ERROR     ? PAIR_BAD
                            : message->level == WB_LOG_WARNING ? PAIR_WARN
                                                               : 0;
-        put(row, 1, COLS - 2, COLOR_PAIR(colour), message->text);
+        put(row, 1, COLS - 2, COLOR_PAIR(colour), "%s", message->text);
     }
 }
 
 static void draw_keys(const struct wb_live_screen *screen)
 {
     const bool is_held = screen->history->frame.word == WB_LIVE_FRAME_HELD;
-    attron(COLOR_PAIR(PAIR_TITLE));
-    mvhline(LINES - 1, 0, ' ', COLS);
-    attroff(COLOR_PAIR(PAIR_TITLE));
-    if (COLS < 54) {
-        put(LINES - 1, 1, COLS - 2, COLOR_PAIR(PAIR_TITLE),
-            is_held ? "q stop  r resume  m mark" : "q stop  h hold  m mark");
-        return;
-    }
-    put(LINES - 1, 1, COLS - 2, COLOR_PAIR(PAIR_TITLE),
-        is_held ? "m  mark this moment    r  resume    q  stop the test"
-                : "m  mark this moment    h  hold    q  stop the test");
+    draw_bar(LINES - 1);
+    put(LINES - 1, 1, COLS - 2, COLOR_PAIR(PAIR_TITLE), "%s",
+        COLS < 54 ? is_held ? "q stop  r resume  m mark" : "q stop  h hold  m mark"
+        : is_held ? "m  mark this moment    r  resume    q  stop the test"
+                  : "m  mark this moment    h  hold    q  stop the test");
 }
 
 /* --- screen --- */

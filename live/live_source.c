@@ -81,7 +81,6 @@ static void fill_streams(const struct wb_acquisition_latest *latest, struct wb_l
         const struct wb_acquisition_stream_state *const stream = &latest->stream[role];
         frame->stream[role] = (struct wb_live_frame_stream){
             .rate = stream->rate,
-            .longest_gap = stream->loss.longest_gap,
             .samples = stream->samples,
             .missing = stream->loss.missing,
             .gaps = stream->loss.gaps,

@@ -5,7 +5,6 @@
 #include <langinfo.h>
 #include <locale.h>
 #include <poll.h>
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -14,19 +13,12 @@
 
 #include "base/timing.h"
 #include "base/units.h"
+#include "live/live_feed.h"
 #include "live/live_history.h"
 #include "live/live_plan.h"
 #include "live/live_screen.h"
 
 #define DRAW_NS (100 * WB_NS_PER_MS) /* between two drawings */
-
-static volatile sig_atomic_t told_to_end;
-
-static void note_end(int number)
-{
-    (void)number;
-    told_to_end = 1;
-}
 
 bool wb_live_terminal_is_there(void)
 {
@@ -55,7 +47,7 @@ static void follow(int socket, struct wb_live_screen *screen, struct wb_live_his
 {
     int64_t drawn_ns = 0;
     bool goes_on = true;
-    while (goes_on && !told_to_end) {
+    while (goes_on && !wb_live_feed_is_told_to_end()) {
         struct pollfd polled[] = {{.fd = socket, .events = POLLIN},
                                   {.fd = STDIN_FILENO, .events = POLLIN}};
         if (wb_time_wait(polled, 2, wb_time_now_ns() + 200 * WB_NS_PER_MS) < 0 && errno != EINTR)
@@ -89,18 +81,12 @@ int wb_live_terminal_run(int socket, void *context)
     const struct wb_live_plan *const plan = context;
     struct wb_live_history history = {0};
     struct wb_live_screen screen = {.plan = plan, .history = &history};
-    struct sigaction action = {.sa_handler = note_end};
     setlocale(LC_CTYPE, "");
     screen.is_unicode = strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
+    /* ncurses keeps the signal handlers of the feed; its own would end the process. */
     SCREEN *const terminal = newterm(NULL, stderr, stdin);
     if (!terminal)
         return 1;
-    /* Replaces the handlers of ncurses, which would end the process. */
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGTERM, &action, NULL);
-    sigaction(SIGHUP, &action, NULL);
-    signal(SIGINT, SIG_IGN);
-    signal(SIGTSTP, SIG_IGN);
     cbreak();
     noecho();
     nodelay(stdscr, TRUE);

@@ -4,11 +4,15 @@
 
 #include "live/live_digits.h"
 #include "live/live_raster.h"
-#include "live/live_raster_private.h"
 #include "tests/check.h"
 
 static struct wb_live_raster raster;
 static char text[4];
+
+static void set_dot(double x, double y)
+{
+    wb_live_raster_line(&raster, (double[]){x, y}, (double[]){x, y}, WB_LIVE_RASTER_NOW, 1);
+}
 
 static void each_dot_of_a_cell_is_its_bit_of_the_braille_pattern(void **state)
 {
@@ -17,8 +21,8 @@ static void each_dot_of_a_cell_is_its_bit_of_the_braille_pattern(void **state)
     static const char *const left[] = {"⠁", "⠂", "⠄", "⡀"}, *const right[] = {"⠈", "⠐", "⠠", "⢀"};
     for (int row = 0; row < 4; row++) {
         wb_live_raster_init(&raster, 2, 1, true);
-        wb_live_raster_dot(&raster, 0.5, 3.5 - row, WB_LIVE_RASTER_NOW);
-        wb_live_raster_dot(&raster, 3.0, 3.0 - row, WB_LIVE_RASTER_NOW);
+        set_dot(0.5, 3.5 - row);
+        set_dot(3.0, 3.0 - row);
         assert_string_equal(wb_live_raster_text(&raster, 0, 0, text), left[row]);
         assert_string_equal(wb_live_raster_text(&raster, 1, 0, text), right[row]);
     }
@@ -30,9 +34,9 @@ static void without_unicode_a_cell_has_two_dots(void **state)
     wb_live_raster_init(&raster, 4, 1, false);
     for (int i = 1; i < 4; i++) {
         if (i & 1)
-            wb_live_raster_dot(&raster, i, 1.0, WB_LIVE_RASTER_NOW);
+            set_dot(i, 1.0);
         if (i & 2)
-            wb_live_raster_dot(&raster, i, 0.0, WB_LIVE_RASTER_NOW);
+            set_dot(i, 0.0);
     }
     assert_string_equal(wb_live_raster_text(&raster, 0, 0, text), "");
     assert_string_equal(wb_live_raster_text(&raster, 1, 0, text), "'");
@@ -48,7 +52,7 @@ static void points_outside_or_nan_are_not_drawn(void **state)
                                 {0, 12},   {(double)NAN, 0}, {0, (double)INFINITY}};
     wb_live_raster_init(&raster, 10, 3, true);
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++)
-        wb_live_raster_dot(&raster, places[i][0], places[i][1], WB_LIVE_RASTER_NOW);
+        set_dot(places[i][0], places[i][1]);
     wb_live_raster_line(&raster, (double[]){0, (double)NAN}, (double[]){5, 5}, WB_LIVE_RASTER_NOW,
                         1);
     wb_live_raster_line(&raster, (double[]){0, 0}, (double[]){1e300, 0}, WB_LIVE_RASTER_NOW, 1);
