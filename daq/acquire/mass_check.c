@@ -145,10 +145,9 @@ static void watch_reading(struct wb_mass_check *check, int64_t waited_ns)
 {
     const char *const address = check->rig.load_cell.address;
     const int64_t settle_ns = ns_of_rig_time(check, STILL_PATIENCE) + CONNECT_NS;
-    if (check->phase == WB_MASS_CHECK_READING && waited_ns > check->duration_ns + CONNECT_NS)
-        FAIL(check, "the load cell at %s sends too few readings: at least 10 are needed", address);
-    else if (check->phase == WB_MASS_CHECK_SETTLING && waited_ns > settle_ns &&
-             check->window_before.n == 0)
+    if ((check->phase == WB_MASS_CHECK_READING && waited_ns > check->duration_ns + CONNECT_NS) ||
+        (check->phase == WB_MASS_CHECK_SETTLING && waited_ns > settle_ns &&
+         check->window_before.n == 0))
         FAIL(check, "the load cell at %s sends too few readings: at least 10 are needed", address);
     else if (check->phase == WB_MASS_CHECK_SETTLING && waited_ns > settle_ns)
         FAIL(check,
@@ -189,13 +188,10 @@ static void store_point(struct wb_mass_check *check)
 
 static void end_reading(struct wb_mass_check *check)
 {
+    const bool is_last = check->index + 1 == check->n;
     store_point(check);
-    if (check->index + 1 == check->n) {
-        enter(check, WB_MASS_CHECK_DONE);
-        return;
-    }
-    check->index++;
-    enter(check, WB_MASS_CHECK_WAITING);
+    check->index += !is_last;
+    enter(check, is_last ? WB_MASS_CHECK_DONE : WB_MASS_CHECK_WAITING);
 }
 
 static void advance(struct wb_mass_check *check, int64_t now_ns)

@@ -17,6 +17,12 @@
  */
 #define WB_RECORDING_LONGEST_VALUE (16 << 20)
 
+/* A number in the header of a file or of its log. */
+static inline uint32_t wb_recording_big_endian(const uint8_t *p)
+{
+    return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
+}
+
 /* --- the write-ahead log --- */
 
 /* Frames of a write-ahead log. */

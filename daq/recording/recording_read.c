@@ -20,11 +20,6 @@
 
 #define HEADER_BYTES 100
 
-static uint32_t big_endian(const uint8_t *p)
-{
-    return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
-}
-
 bool wb_recording_needs_log(const uint8_t *file, size_t n)
 {
     return n >= HEADER_BYTES && memcmp(file, "SQLite format 3", 16) == 0 &&
@@ -43,11 +38,11 @@ static enum wb_status check_header(struct wb_recording *recording, int descripto
     if (n < HEADER_BYTES || memcmp(header, "SQLite format 3", 16) != 0)
         return wb_fail_also(recording->why, WB_ERR_FORMAT, "'%s' is not a recording%s",
                             recording->path, n == 0 ? ": the file is empty" : "");
-    if (big_endian(header + 68) != WB_RECORDING_APPLICATION_ID)
+    if (wb_recording_big_endian(header + 68) != WB_RECORDING_APPLICATION_ID)
         return wb_fail_also(recording->why, WB_ERR_FORMAT,
                             "'%s' is not a recording but an SQLite database of another program",
                             recording->path);
-    const uint32_t version = big_endian(header + 60);
+    const uint32_t version = wb_recording_big_endian(header + 60);
     if (version == 0)
         return wb_fail_also(recording->why, WB_ERR_DATA, "'%s' is damaged: its schema number is 0",
                             recording->path);
@@ -62,7 +57,7 @@ static enum wb_status check_header(struct wb_recording *recording, int descripto
     if (page == 1)
         page = 65536;
     recording->bytes_there = there.st_size;
-    recording->bytes_expected = page * (int64_t)big_endian(header + 28);
+    recording->bytes_expected = page * (int64_t)wb_recording_big_endian(header + 28);
     if (there.st_size < recording->bytes_expected)
         recording->shortened = true;
     /* A row takes more than four bytes. */

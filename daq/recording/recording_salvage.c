@@ -16,11 +16,16 @@ enum {
     LEAST_INLINE = (PAGE - 12) * 32 / 255 - 23 /* least part in the leaf page of larger rows */
 };
 
+/* A row in a leaf page of the file or the log. */
+struct cell {
+    int64_t number;
+    const uint8_t *at; /* the record */
+    size_t n, n_inline;
+};
+
 /* Location of a row. */
 struct place {
-    int64_t number;
-    const uint8_t *cell; /* in a page of the file or the log */
-    const uint8_t *end;  /* of that page */
+    struct cell cell;
     uint32_t crc32, chain;
     uint32_t followers; /* rows after it in the chain */
     enum wb_recording_kind kind;
@@ -45,16 +50,11 @@ struct wb_recording_salvage {
                          chains of pages */
 };
 
-static uint32_t big_endian(const uint8_t *p)
-{
-    return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
-}
-
 /* --- the log --- */
 
 static uint32_t word(const uint8_t *p, bool is_big)
 {
-    return is_big ? big_endian(p)
+    return is_big ? wb_recording_big_endian(p)
                   : (uint32_t)p[3] << 24 | (uint32_t)p[2] << 16 | (uint32_t)p[1] << 8 | p[0];
 }
 
@@ -72,12 +72,14 @@ void wb_recording_log_count(const uint8_t *bytes, size_t n, struct wb_recording_
     *log = (struct wb_recording_log){0};
     if (n < LOG_HEADER)
         return;
-    const bool is_big = (big_endian(bytes) & 1) != 0;
+    const bool is_big = (wb_recording_big_endian(bytes) & 1) != 0;
     const uint8_t *const salt = bytes + 16;
     uint32_t sum[2] = {0, 0};
     add_sum(sum, bytes, 24, is_big);
-    bool fits = (big_endian(bytes) | 1) == 0x377f0683 && big_endian(bytes + 8) == PAGE &&
-                big_endian(bytes + 24) == sum[0] && big_endian(bytes + 28) == sum[1];
+    bool fits = (wb_recording_big_endian(bytes) | 1) == 0x377f0683 &&
+                wb_recording_big_endian(bytes + 8) == PAGE &&
+                wb_recording_big_endian(bytes + 24) == sum[0] &&
+                wb_recording_big_endian(bytes + 28) == sum[1];
     for (size_t at = LOG_HEADER; at + FRAME_HEADER + PAGE <= n; at += FRAME_HEADER + PAGE) {
         const uint8_t *const frame = bytes + at;
         /* A frame of an older log, or a damaged one. */
@@ -87,7 +89,8 @@ void wb_recording_log_count(const uint8_t *bytes, size_t n, struct wb_recording_
         }
         add_sum(sum, frame, 8, is_big);
         add_sum(sum, frame + FRAME_HEADER, PAGE, is_big);
-        fits = fits && big_endian(frame + 16) == sum[0] && big_endian(frame + 20) == sum[1];
+        fits = fits && wb_recording_big_endian(frame + 16) == sum[0] &&
+               wb_recording_big_endian(frame + 20) == sum[1];
         log->frames++;
         log->readable += fits;
     }
@@ -113,8 +116,8 @@ static void list_frames(struct wb_recording_salvage *s, size_t n_log)
         return;
     s->frames = wb_memory_new(n, sizeof *s->frames);
     for (size_t i = 0; i < n && i < UINT32_MAX; i++)
-        s->frames[s->n_frames++] =
-            (struct frame){big_endian(frame_page(s, (uint32_t)i) - FRAME_HEADER), (uint32_t)i};
+        s->frames[s->n_frames++] = (struct frame){
+            wb_recording_big_endian(frame_page(s, (uint32_t)i) - FRAME_HEADER), (uint32_t)i};
     qsort(s->frames, s->n_frames, sizeof *s->frames, compare_frames);
 }
 
@@ -181,7 +184,7 @@ static bool assemble(struct wb_recording_salvage *s, const uint8_t *at, size_t n
     s->budget -= n;
     s->payload = wb_memory_resize(s->payload, n, 1);
     memcpy(s->payload, at, n_inline);
-    uint32_t next = big_endian(at + n_inline);
+    uint32_t next = wb_recording_big_endian(at + n_inline);
     for (size_t done = n_inline; done < n;) {
         const uint8_t *const page = find_page(s, next, is_file_first);
         if (!page)
@@ -189,7 +192,7 @@ static bool assemble(struct wb_recording_salvage *s, const uint8_t *at, size_t n
         const size_t part = n - done < PAGE - 4 ? n - done : PAGE - 4;
         memcpy(s->payload + done, page + 4, part);
         done += part;
-        next = big_endian(page);
+        next = wb_recording_big_endian(page);
     }
     return true;
 }
@@ -264,13 +267,7 @@ static bool read_record(enum wb_recording_kind kind, const uint8_t *record, size
            row->crc32 == wb_recording_row_crc32(kind, row->number, row->values);
 }
 
-/* Header of a cell in a leaf page. */
-struct cell {
-    int64_t number;
-    const uint8_t *at; /* the record */
-    size_t n, n_inline;
-};
-
+/* Reads the header of a cell. */
 static bool read_cell(const uint8_t *at, const uint8_t *end, struct cell *cell)
 {
     uint64_t n, number;
@@ -302,12 +299,6 @@ static bool read_row(struct wb_recording_salvage *s, const struct cell *cell, bo
     return false;
 }
 
-static void keep(struct wb_recording_salvage *s, const struct place *place)
-{
-    s->places = wb_memory_room(s->places, &s->capacity, s->n_places + 1, sizeof *s->places);
-    s->places[s->n_places++] = *place;
-}
-
 /* Finds the rows of a page, if it is a leaf page of a table. */
 static void scan_page(struct wb_recording_salvage *s, const uint8_t *page)
 {
@@ -324,45 +315,39 @@ static void scan_page(struct wb_recording_salvage *s, const uint8_t *page)
         if (cell.n_inline > room)
             break;
         room -= cell.n_inline;
-        for (int way = 0; way < 2; way++) {
-            if (!read_row(s, &cell, way == 1, 0, WB_RECORDING_TABLES - 1, &row)) {
-                if (cell.n_inline == cell.n)
-                    break;
-                continue;
-            }
-            const struct place place = {.number = row.number,
-                                        .cell = page + at,
-                                        .end = page + PAGE,
-                                        .crc32 = (uint32_t)row.crc32,
-                                        .chain = (uint32_t)row.chain,
-                                        .kind = row.kind,
-                                        .is_file_first = way == 1};
-            keep(s, &place);
-            break;
-        }
+        const bool is_file_first = !read_row(s, &cell, false, 0, WB_RECORDING_TABLES - 1, &row);
+        if (is_file_first && (cell.n_inline == cell.n ||
+                              !read_row(s, &cell, true, 0, WB_RECORDING_TABLES - 1, &row)))
+            continue;
+        s->places = wb_memory_room(s->places, &s->capacity, s->n_places + 1, sizeof *s->places);
+        s->places[s->n_places++] = (struct place){.cell = cell,
+                                                  .crc32 = (uint32_t)row.crc32,
+                                                  .chain = (uint32_t)row.chain,
+                                                  .kind = row.kind,
+                                                  .is_file_first = is_file_first};
     }
 }
 
 static int compare_places(const void *a, const void *b)
 {
     const struct place *const x = a, *const y = b;
-    if (x->number != y->number)
-        return x->number < y->number ? -1 : 1;
+    if (x->cell.number != y->cell.number)
+        return x->cell.number < y->cell.number ? -1 : 1;
     /* Every version of a page contains the same row. */
     return x->crc32 != y->crc32 ? (x->crc32 < y->crc32 ? -1 : 1) : 0;
 }
 
 static bool follows(const struct place *row, const struct place *before)
 {
-    return row->number == before->number + 1 &&
+    return row->cell.number == before->cell.number + 1 &&
            row->chain == wb_recording_chain(before->chain, row->crc32);
 }
 
 /* Index after the last place with the same row number as place `i`. */
 static size_t end_of_number(const struct wb_recording_salvage *s, size_t i)
 {
-    const int64_t number = s->places[i].number;
-    while (i < s->n_places && s->places[i].number == number)
+    const int64_t number = s->places[i].cell.number;
+    while (i < s->n_places && s->places[i].cell.number == number)
         i++;
     return i;
 }
@@ -457,9 +442,8 @@ void wb_recording_salvage_row(struct wb_recording_salvage *salvage, size_t index
                               struct wb_recording_row *row)
 {
     const struct place *const place = &salvage->places[index];
-    struct cell cell;
     salvage->budget = UINT64_MAX; /* the row was already read once: its chain of pages ends */
-    if (!read_cell(place->cell, place->end, &cell) ||
-        !read_row(salvage, &cell, place->is_file_first, (int)place->kind, (int)place->kind, row))
-        *row = (struct wb_recording_row){.number = place->number, .is_nothing = true};
+    if (!read_row(salvage, &place->cell, place->is_file_first, (int)place->kind, (int)place->kind,
+                  row))
+        *row = (struct wb_recording_row){.number = place->cell.number, .is_nothing = true};
 }

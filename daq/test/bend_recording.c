@@ -35,12 +35,14 @@ char *wb_bend_recording_yaml_part(const char *yaml, const char *key)
     return strndup(begin, (size_t)(end - begin));
 }
 
-static enum wb_status set_text_file(struct wb_recording *recording, const char *key,
-                                    const char *path)
+/* Stores the text, or that of the file if it is NULL. */
+static enum wb_status set_text(struct wb_recording *recording, const char *key, const char *given,
+                               const char *path)
 {
-    char *text;
-    WB_TRY(wb_file_read(path, &text, NULL));
-    const enum wb_status status = wb_recording_set_meta(recording, key, text);
+    char *text = NULL;
+    if (!given)
+        WB_TRY(wb_file_read(path, &text, NULL));
+    const enum wb_status status = wb_recording_set_meta(recording, key, given ? given : text);
     free(text);
     return status;
 }
@@ -50,7 +52,7 @@ static enum wb_status set_wire(struct wb_recording *recording,
 {
     char path[WB_PATH];
     WB_TRY(wb_specimen_find_wire(description->specimen, description->specimen_path, path));
-    return set_text_file(recording, "wire", path);
+    return set_text(recording, "wire", NULL, path);
 }
 
 static enum wb_status set_truth(struct wb_recording *recording,
@@ -114,10 +116,8 @@ static enum wb_status set_check(struct wb_recording *recording,
     return wb_recording_set_meta(recording, "load_cell_check", line);
 }
 
-static enum wb_status set_meta(struct wb_recording *recording,
-                               const struct wb_bend_recording *description)
+static enum wb_status set_meta(struct wb_recording *recording, const struct wb_bend_recording *d)
 {
-    const struct wb_bend_recording *const d = description;
     char text[32];
     snprintf(text, sizeof text, "%d", WB_RECORDING_SCHEMA);
     WB_TRY(wb_recording_set_meta(recording, "schema", text));
@@ -126,14 +126,8 @@ static enum wb_status set_meta(struct wb_recording *recording,
     WB_TRY(set_circumstances(recording, d));
     WB_TRY(wb_recording_set_meta(recording, "operator", d->operator_name ? d->operator_name : ""));
     WB_TRY(wb_recording_set_meta(recording, "notes", d->notes ? d->notes : ""));
-    if (d->rig_text)
-        WB_TRY(wb_recording_set_meta(recording, "rig", d->rig_text));
-    else
-        WB_TRY(set_text_file(recording, "rig", d->rig_path));
-    if (d->specimen_text)
-        WB_TRY(wb_recording_set_meta(recording, "specimen", d->specimen_text));
-    else
-        WB_TRY(set_text_file(recording, "specimen", d->specimen_path));
+    WB_TRY(set_text(recording, "rig", d->rig_text, d->rig_path));
+    WB_TRY(set_text(recording, "specimen", d->specimen_text, d->specimen_path));
     WB_TRY(set_wire(recording, d));
     WB_TRY(set_truth(recording, d));
     if (!d->rig_text)
