@@ -45,10 +45,8 @@ void wb_live_screen_prepare(void)
 }
 
 /* Writes a text, truncated to the available columns. */
-static void put(int row, int column, int columns, int attributes, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
-
-static void put(int row, int column, int columns, int attributes, const char *format, ...)
+static void __attribute__((format(printf, 5, 6)))
+put(int row, int column, int columns, int attributes, const char *format, ...)
 {
     char text[512];
     if (columns <= 0 || row < 0 || row >= LINES || column >= COLS)

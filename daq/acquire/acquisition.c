@@ -86,11 +86,8 @@ static void push_text(struct wb_acquisition *a, int64_t t_ns, const char *kind, 
 }
 
 /* Records an event, if there is a recording. */
-static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind, const char *format,
-                       ...) __attribute__((format(printf, 4, 5)));
-
-static void push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind, const char *format,
-                       ...)
+static void __attribute__((format(printf, 4, 5)))
+push_event(struct wb_acquisition *a, int64_t t_ns, const char *kind, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);

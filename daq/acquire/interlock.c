@@ -185,16 +185,13 @@ bool wb_interlock_tick(struct wb_interlock *interlock, int64_t now_ns)
         if (!expired(interlock, role, now_ns))
             continue;
         interlock->lost[role] = true;
-        if (!interlock->armed)
-            continue;
-        if (wb_interlock_trip(interlock, WB_INTERLOCK_STREAM_LOST,
+        if (interlock->armed &&
+            wb_interlock_trip(interlock, WB_INTERLOCK_STREAM_LOST,
                               interlock->last_ns[role] + allowed,
                               "the %s sent no valid sample for %.2f s", names[role],
                               wb_seconds_from_ns(now_ns - interlock->last_ns[role])))
             tripped = true;
     }
-    if (tripped)
-        interlock->lasted_ns = now_ns - interlock->t_ns;
     return tripped;
 }
 

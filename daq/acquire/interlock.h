@@ -78,8 +78,7 @@ struct wb_interlock {
     int64_t discounted_ns[WB_INTERLOCK_ROLES]; /* stalls of this computer since the last sample */
     bool armed; /* false: `lost` is still updated, but nothing trips */
     enum wb_interlock_reason reason;
-    int64_t t_ns;      /* arrival of the sample, or end of the allowed silence, that tripped it */
-    int64_t lasted_ns; /* for a lost stream: delay from t_ns until it was detected */
+    int64_t t_ns; /* arrival of the sample, or end of the allowed silence, that tripped it */
     char text[WB_INTERLOCK_TEXT]; /* for the operator and the recording */
 };
 

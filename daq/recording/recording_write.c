@@ -136,11 +136,10 @@ static enum wb_status make_file(const char *path)
     if (error == ENOENT && wb_file_is_folder(folder)) /* /proc and the like */
         return wb_fail(WB_ERR_PERMISSION, "'%s' cannot be created: no files can be written in '%s'",
                        path, folder);
-    errno = error;
-    if (errno == ENOENT || errno == ENOTDIR)
+    if (error == ENOENT || error == ENOTDIR)
         return wb_fail(WB_ERR_NOT_FOUND, "'%s' cannot be created: its folder does not exist", path);
-    return wb_fail(errno == EACCES || errno == EROFS ? WB_ERR_PERMISSION : WB_ERR_IO,
-                   "'%s' cannot be created: %s", path, strerror(errno));
+    return wb_fail(error == EACCES || error == EROFS ? WB_ERR_PERMISSION : WB_ERR_IO,
+                   "'%s' cannot be created: %s", path, strerror(error));
 }
 
 static enum wb_status prepare(struct wb_recording *recording)

@@ -183,11 +183,10 @@ static bool wait_until_due(struct replay *replay, int64_t t_ns)
 
 static void remark_damage(struct replay *replay, const struct wb_chunk *chunk)
 {
-    char text[160];
-    snprintf(text, sizeof text, "chunk %lld of stream %d is damaged and skipped",
-             (long long)chunk->seq, chunk->stream);
     replay->counts->damaged_chunks++;
-    pass_remark(replay, WB_LOG_WARNING, chunk->t_ns, "damage", text);
+    wb_driver_remark(replay->sink, WB_LOG_WARNING, chunk->t_ns, "damage",
+                     "chunk %lld of stream %d is damaged and skipped", (long long)chunk->seq,
+                     chunk->stream);
 }
 
 static void lose_file(struct replay *replay, struct file *file, int64_t t_ns, const char *reason)

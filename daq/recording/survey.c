@@ -273,10 +273,8 @@ struct problems {
     size_t size;
 };
 
-static void note(struct problems *problems, bool is_problem, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static void note(struct problems *problems, bool is_problem, const char *format, ...)
+static void __attribute__((format(printf, 3, 4)))
+note(struct problems *problems, bool is_problem, const char *format, ...)
 {
     va_list arguments;
     if (!is_problem || problems->n++ != problems->wanted)

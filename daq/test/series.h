@@ -34,8 +34,6 @@ enum wb_series_question {
     WB_SERIES_NOTES,
     WB_SERIES_QUESTIONS
 };
-extern const char
-    *const wb_series_questions[]; /* "markers_mm", "marker_offset_mm", "notes", NULL */
 
 #define WB_SERIES_FILE 256 /* bytes of the name of a recording, with the NUL */
 
