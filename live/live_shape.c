@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/units.h"
+#include "base/vec3.h"
 #include "daq/acquire/marker_check.h"
 
 /* Frames between two searches for all markers, which are slow; tracking is fast. */
@@ -25,17 +26,12 @@ static void find(struct wb_live_shape *shape, const struct wb_mocap_frame *frame
         for (int k = 0; k < 3; k++)
             shape->at[i][k] = (double)frame->markers[places.index[i]].position[k];
     const double *const first = shape->at[0], *const last = shape->at[shape->n - 1];
-    double length = 0.0;
-    for (int k = 0; k < 3; k++) {
-        shape->along[k] = k == shape->up ? 0.0 : last[k] - first[k];
-        length += shape->along[k] * shape->along[k];
-    }
     for (int k = 0; k < 3; k++)
-        shape->along[k] /= sqrt(length);
+        shape->along[k] = k == shape->up ? 0.0 : last[k] - first[k];
     shape->rest[0] = first[shape->up];
     shape->rest[1] = last[shape->up];
     shape->seen = (uint32_t)((UINT64_C(1) << shape->n) - 1);
-    shape->is_found = length > 0.0;
+    shape->is_found = wb_vec3_normalise(shape->along) > 0.0;
 }
 
 /* Moves a hidden marker like its nearest visible neighbours, so that it is found again. */

@@ -899,8 +899,7 @@ int wb_acquisition_stream(const struct wb_acquisition *a, enum wb_role role)
 
 void wb_acquisition_start(struct wb_acquisition *a, struct wb_writer *writer)
 {
-    struct wb_interlock_settings unwatched;
-    memset(&unwatched, 0, sizeof unwatched);
+    const struct wb_interlock_settings unwatched = {0};
     const int64_t now_ns = wb_time_now_ns();
     a->writer = writer;
     a->started = true;

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/units.h"
 #include "daq/protocol/tic.h"
@@ -32,25 +31,24 @@ static int64_t later(int64_t a, int64_t b)
 
 void wb_interlock_default_settings(struct wb_interlock_settings *settings, const struct wb_rig *rig)
 {
-    memset(settings, 0, sizeof *settings);
-    settings->force = rig->limits.force > 0.0 ? rig->limits.force : rig->load_cell.overload;
-    settings->overload = rig->load_cell.overload;
-    settings->travel = rig->limits.travel > 0.0 ? rig->limits.travel : rig->stage.travel;
-    settings->down = rig->stage.down;
     int64_t silence = wb_ns_from_seconds(rig->limits.stream_lost / rig->time_scale);
     if (rig->time_scale > 1.0)
         silence = later(silence, WB_INTERLOCK_SILENCE_NS);
-    settings->stream_lost_ns[WB_ROLE_LOAD] = silence;
-    settings->stream_lost_ns[WB_ROLE_MOCAP] = silence;
-    settings->stream_lost_ns[WB_ROLE_STAGE] = later(silence, WB_INTERLOCK_STAGE_SILENCE_NS);
+    *settings = (struct wb_interlock_settings){
+        .force = rig->limits.force > 0.0 ? rig->limits.force : rig->load_cell.overload,
+        .overload = rig->load_cell.overload,
+        .travel = rig->limits.travel > 0.0 ? rig->limits.travel : rig->stage.travel,
+        .down = rig->stage.down,
+        .stream_lost_ns = {[WB_ROLE_LOAD] = silence,
+                           [WB_ROLE_MOCAP] = silence,
+                           [WB_ROLE_STAGE] = later(silence, WB_INTERLOCK_STAGE_SILENCE_NS)},
+    };
 }
 
 void wb_interlock_init(struct wb_interlock *interlock, const struct wb_interlock_settings *settings,
                        int64_t now_ns)
 {
-    memset(interlock, 0, sizeof *interlock);
-    interlock->settings = *settings;
-    interlock->start_position = (double)NAN;
+    *interlock = (struct wb_interlock){.settings = *settings, .start_position = (double)NAN};
     for (int role = 0; role < WB_INTERLOCK_ROLES; role++)
         interlock->last_ns[role] = now_ns;
 }
@@ -208,10 +206,7 @@ int64_t wb_interlock_deadline(const struct wb_interlock *interlock)
 
 void wb_stop_begin(struct wb_stop *stop, int64_t now_ns)
 {
-    memset(stop, 0, sizeof *stop);
-    stop->state = WB_STOP_HOLDING;
-    stop->hold_ns = now_ns;
-    stop->next_ask_ns = now_ns;
+    *stop = (struct wb_stop){.state = WB_STOP_HOLDING, .hold_ns = now_ns, .next_ask_ns = now_ns};
 }
 
 void wb_stop_settle(struct wb_stop *stop, enum wb_stop_state state, int64_t now_ns)

@@ -12,9 +12,8 @@
 /* A command waits while an earlier one is unanswered; the driver itself gives up after 2 s. */
 #define SEND_NS (4 * WB_NS_PER_S)
 
-#define RAMP_S                                                                                     \
-    0.5 /* assumed time of acceleration if the stage does not report its acceleration              \
-         */
+/* s, assumed time of acceleration if the stage does not report its acceleration. */
+#define RAMP_S 0.5
 
 double wb_sequence_travel(const struct wb_sequence *sequence, double position)
 {

@@ -92,16 +92,14 @@ static bool read_value(sqlite3_stmt *statement, int column, char type,
         value->real =
             stored == SQLITE_NULL ? (double)NAN : sqlite3_column_double(statement, column);
         return stored == SQLITE_FLOAT || stored == SQLITE_INTEGER || stored == SQLITE_NULL;
-    case 't':
-        if (sqlite3_column_text(statement, column))
-            value->bytes = sqlite3_column_text(statement, column);
+    default: {
+        const void *const bytes = type == 't' ? (const void *)sqlite3_column_text(statement, column)
+                                              : sqlite3_column_blob(statement, column);
+        if (bytes)
+            value->bytes = bytes;
         value->n = (size_t)sqlite3_column_bytes(statement, column);
-        return stored == SQLITE_TEXT;
-    default:
-        if (sqlite3_column_blob(statement, column))
-            value->bytes = sqlite3_column_blob(statement, column);
-        value->n = (size_t)sqlite3_column_bytes(statement, column);
-        return stored == SQLITE_BLOB;
+        return stored == (type == 't' ? SQLITE_TEXT : SQLITE_BLOB);
+    }
     }
 }
 
