@@ -16,7 +16,6 @@
 #include "daq/acquire/stage_check.h"
 #include "daq/test/bend_hold.h"
 #include "daq/test/bend_recording.h"
-#include "daq/test/bend_test_private.h"
 #include "daq/test/check_due.h"
 #include "daq/test/clamp_watch.h"
 #include "daq/test/first_force.h"
@@ -104,6 +103,42 @@ void wb_bend_test_default_request(struct wb_bend_test_request *request)
 static int64_t host_ns(const struct wb_bend_test *test, double rig_seconds)
 {
     return wb_ns_from_seconds(rig_seconds / test->run.rig.time_scale);
+}
+
+/* --- speeds --- */
+
+/* Parses the speeds, m/s; false if one is not a number in the stage's range. */
+static bool read_speeds(const char *text, double speeds[WB_BEND_TEST_MOST_SPEEDS], int *n)
+{
+    *n = 0;
+    for (bool is_more = *text != '\0'; is_more;) {
+        char *end;
+        const double speed = strtod(text, &end) * WB_MM;
+        if (end == text || !(speed >= slowest && speed <= fastest) ||
+            *n == WB_BEND_TEST_MOST_SPEEDS || (*end != ',' && *end != '\0'))
+            return false;
+        speeds[(*n)++] = speed;
+        is_more = *end == ',';
+        text = end + 1;
+    }
+    return true;
+}
+
+/* Speed of a cycle (counted from 1), m/s; the speeds of the request have been checked. */
+static double speed_of(const struct wb_bend_test_request *request, const struct wb_rig *rig,
+                       int cycle)
+{
+    double speeds[WB_BEND_TEST_MOST_SPEEDS];
+    int n;
+    return read_speeds(request->speeds, speeds, &n) && n > 0 ? speeds[(cycle - 1) % n]
+                                                             : rig->stage.speed;
+}
+
+double wb_bend_test_cycle_time(const struct wb_bend_test_request *request, const struct wb_rig *rig,
+                               int cycle)
+{
+    return 2.0 * request->travel / speed_of(request, rig, cycle) + request->dwell_time +
+           request->rest_time;
 }
 
 /* --- ending the test --- */
@@ -247,7 +282,7 @@ static bool check_settings(const struct wb_bend_test *test, char text[WB_START_C
     struct wb_rig fastest_cycle = test->rig;
     for (int cycle = 1; cycle <= test->request.cycles && cycle <= WB_BEND_TEST_MOST_SPEEDS; cycle++)
         fastest_cycle.stage.speed = fmax(cycle == 1 ? 0.0 : fastest_cycle.stage.speed,
-                                         wb_bend_test_speed(&test->request, &test->rig, cycle));
+                                         speed_of(&test->request, &test->rig, cycle));
     return !latest->has_settings ||
            wb_stage_check_test(&latest->settings, &fastest_cycle, latest->stage.position,
                                test->request.travel, text);
@@ -362,7 +397,7 @@ static void begin_cycle(struct wb_bend_test *test)
 {
     test->cycle++;
     test->later_time = later_time(test);
-    test->run.rig.stage.speed = wb_bend_test_speed(&test->request, &test->rig, test->cycle);
+    test->run.rig.stage.speed = speed_of(&test->request, &test->rig, test->cycle);
     test->result.started = true;
     restart_drop_watch(test);
     wb_acquisition_event(test->run.acquisition, "cycle_start", "%d", test->cycle);
@@ -380,7 +415,7 @@ static void step_tare(struct wb_bend_test *test)
     wb_acquisition_event(test->run.acquisition, "tare",
                          "{\"force_N\": %.17g, \"samples\": %" PRId64 ", \"sd_N\": %.17g}",
                          test->result.tare, test->zero.n, wb_average_deviation(&test->zero));
-    test->run.rig.stage.speed = wb_bend_test_speed(&test->request, &test->rig, 1);
+    test->run.rig.stage.speed = speed_of(&test->request, &test->rig, 1);
     arm(test);
     wb_first_force_begin(&test->first_force, wb_average_deviation(&test->zero), &test->run.rig);
     begin_cycle(test);
@@ -594,41 +629,6 @@ static void on_mocap(void *context, const struct wb_mocap_frame *frame)
         wb_tip_watch_rest(&test->tip, frame, &test->specimen, test->run.rig.mocap.up);
     else if (test->run.phase > PHASE_TARE)
         wb_tip_watch_follow(&test->tip, frame);
-}
-
-/* --- speeds --- */
-
-/* Parses the speeds, m/s; false if one is not a number in the stage's range. */
-static bool read_speeds(const char *text, double speeds[WB_BEND_TEST_MOST_SPEEDS], int *n)
-{
-    *n = 0;
-    for (bool is_more = *text != '\0'; is_more;) {
-        char *end;
-        const double speed = strtod(text, &end) * WB_MM;
-        if (end == text || !(speed >= slowest && speed <= fastest) ||
-            *n == WB_BEND_TEST_MOST_SPEEDS || (*end != ',' && *end != '\0'))
-            return false;
-        speeds[(*n)++] = speed;
-        is_more = *end == ',';
-        text = end + 1;
-    }
-    return true;
-}
-
-double wb_bend_test_speed(const struct wb_bend_test_request *request, const struct wb_rig *rig,
-                          int cycle)
-{
-    double speeds[WB_BEND_TEST_MOST_SPEEDS];
-    int n;
-    return read_speeds(request->speeds, speeds, &n) && n > 0 ? speeds[(cycle - 1) % n]
-                                                             : rig->stage.speed;
-}
-
-double wb_bend_test_cycle_time(const struct wb_bend_test_request *request, const struct wb_rig *rig,
-                               int cycle)
-{
-    return 2.0 * request->travel / wb_bend_test_speed(request, rig, cycle) + request->dwell_time +
-           request->rest_time;
 }
 
 /* --- opening --- */

@@ -8,7 +8,6 @@
 #include "base/timing.h"
 #include "daq/recording/writer_private.h"
 #include "daq/test/bend_recording_private.h"
-#include "daq/test/bend_test_private.h"
 #include "tests/daq/bend_fixture.h"
 #include "tests/messages.h"
 
@@ -142,9 +141,8 @@ static void cycles_have_their_dwell_and_their_speeds_in_turn(void **state)
     assert_int_equal(wb_bend_test_open(&test, &fixture->request), WB_OK);
     for (int cycle = 1; cycle <= 2; cycle++) {
         const double way = 12.0 / speeds[cycle - 1];
-        assert_close(
-            wb_bend_test_speed(&fixture->request, &(struct wb_rig){.time_scale = 1.0}, cycle),
-            speeds[cycle - 1] * WB_MM, 1e-12);
+        assert_close(wb_bend_test_cycle_time(&fixture->request, &(struct wb_rig){0}, cycle),
+                     2.0 * way + 5.0 + 2.0, 1e-12);
         assert_true(run(test, dwells));
         wb_bend_test_status(test, &status);
         assert_close(status.travel, 12.0 * WB_MM, 0.02 * WB_MM);
