@@ -53,13 +53,7 @@ void wb_cells_lines_begin(struct wb_cells_lines *lines, const uint8_t *bytes, si
     lines->end = text + n_units;
 }
 
-/* The next CR before the next LF; NULL: there is none. */
-static const char *find_cr(const struct wb_cells_lines *lines, const char *from)
-{
-    return memchr(from, '\r', (size_t)(lines->lf - from));
-}
-
-bool wb_cells_lines_next(struct wb_cells_lines *lines, const char **line, size_t *n)
+bool wb_cells_lines_next(struct wb_cells_lines *lines, struct wb_span *line)
 {
     if (lines->at == lines->end)
         return false;
@@ -69,30 +63,17 @@ bool wb_cells_lines_next(struct wb_cells_lines *lines, const char **line, size_t
         if (!lines->lf)
             lines->lf = lines->end;
     }
-    const char *end = lines->lf < lines->end ? lines->lf : NULL;
-    const char *const cr = find_cr(lines, from);
-    lines->terminated = true;
-    if (cr) {
-        /* Only further CRs may be between a CR and its LF; otherwise the CR itself ends the line.
-         */
-        const char *next = cr;
-        while (next < lines->end && *next == '\r')
-            next++;
-        if (next == end)
-            next++;
-        else
-            next = cr + 1;
-        lines->at = next;
-        end = cr;
-    } else if (end) {
-        lines->at = end + 1;
-    } else {
-        end = lines->end;
-        lines->at = end;
-        lines->terminated = false;
-    }
-    *line = from;
-    *n = (size_t)(end - from);
+    const char *const cr = memchr(from, '\r', (size_t)(lines->lf - from));
+    const char *const end = cr ? cr : lines->lf;
+    lines->terminated = end < lines->end;
+    lines->at = end + lines->terminated;
+    /* Only further CRs may be between a CR and its LF; otherwise the CR itself ends the line. */
+    const char *next = end;
+    while (cr && next < lines->lf && *next == '\r')
+        next++;
+    if (cr && next < lines->end && next == lines->lf)
+        lines->at = next + 1;
+    *line = (struct wb_span){from, (size_t)(end - from)};
     lines->number++;
     return true;
 }
@@ -110,22 +91,21 @@ static bool is_blank(char c)
     return c == ' ' || c == '\t' || c == '\0';
 }
 
-static void trim(const char **cell, size_t *n)
+static struct wb_span trim(struct wb_span cell)
 {
-    while (*n > 0 && is_blank((*cell)[*n - 1]))
-        --*n;
-    while (*n > 0 && is_blank(**cell)) {
-        ++*cell;
-        --*n;
-    }
+    while (cell.n > 0 && is_blank(cell.text[cell.n - 1]))
+        cell.n--;
+    for (; cell.n > 0 && is_blank(*cell.text); cell.n--)
+        cell.text++;
+    return cell;
 }
 
-void wb_cells_begin(struct wb_cells *cells, const char *line, size_t n, char delimiter)
+void wb_cells_begin(struct wb_cells *cells, struct wb_span line, char delimiter)
 {
     if (delimiter == ' ')
-        trim(&line, &n);
-    *cells = (struct wb_cells){.at = line, .end = line + n, .delimiter = delimiter};
-    if (delimiter == ' ' && n == 0)
+        line = trim(line);
+    *cells = (struct wb_cells){line.text, line.text + line.n, delimiter, 0};
+    if (delimiter == ' ' && line.n == 0)
         cells->at = NULL;
 }
 
@@ -149,19 +129,14 @@ static const char *find_end(const struct wb_cells *cells)
     return at;
 }
 
-bool wb_cells_next(struct wb_cells *cells, const char **cell, size_t *n)
+bool wb_cells_next(struct wb_cells *cells, struct wb_span *cell)
 {
     if (!cells->at)
         return false;
     const char *end = find_end(cells);
-    *cell = cells->at;
-    *n = (size_t)(end - cells->at);
-    trim(cell, n);
-    if (*n >= 2 && **cell == '"' && (*cell)[*n - 1] == '"') {
-        ++*cell;
-        *n -= 2;
-        trim(cell, n);
-    }
+    *cell = trim((struct wb_span){cells->at, (size_t)(end - cells->at)});
+    if (cell->n >= 2 && *cell->text == '"' && cell->text[cell->n - 1] == '"')
+        *cell = trim((struct wb_span){cell->text + 1, cell->n - 2});
     cells->column++;
     if (end == cells->end) {
         cells->at = NULL;
@@ -174,45 +149,56 @@ bool wb_cells_next(struct wb_cells *cells, const char **cell, size_t *n)
     return true;
 }
 
-bool wb_cells_blank(const char *line, size_t n, char delimiter)
+bool wb_cells_blank(struct wb_span line, char delimiter)
 {
-    for (size_t i = 0; i < n; i++)
-        if (!is_blank(line[i]) && line[i] != delimiter && line[i] != '"')
+    for (size_t i = 0; i < line.n; i++)
+        if (!is_blank(line.text[i]) && line.text[i] != delimiter && line.text[i] != '"')
             return false;
     return true;
 }
 
-bool wb_cells_equal(const char *cell, size_t n, const char *word)
+bool wb_cells_equal(struct wb_span cell, const char *word)
 {
-    return n == strlen(word) && strncasecmp(cell, word, n) == 0;
+    return cell.n == strlen(word) && wb_cells_begins(cell, word);
 }
 
-bool wb_cells_begins(const char *cell, size_t n, const char *word)
+bool wb_cells_begins(struct wb_span cell, const char *word)
 {
-    return n >= strlen(word) && strncasecmp(cell, word, strlen(word)) == 0;
+    return cell.n >= strlen(word) && strncasecmp(cell.text, word, strlen(word)) == 0;
+}
+
+bool wb_cells_lists(const char *words, const char *word)
+{
+    const size_t n = strlen(word);
+    for (const char *at = words; *at; at += strspn(at, " ")) {
+        const size_t length = strcspn(at, " ");
+        if (length == n && memcmp(at, word, n) == 0)
+            return true;
+        at += length;
+    }
+    return false;
 }
 
 /* --- numbers --- */
 
-static bool slow_number(const char *cell, size_t n, char comma, double *value)
+static bool slow_number(struct wb_span cell, char comma, double *value)
 {
     char text[64];
-    if (n >= sizeof text)
+    if (cell.n >= sizeof text)
         return false;
-    for (size_t i = 0; i < n; i++)
-        text[i] = comma && cell[i] == comma ? '.' : cell[i];
-    text[n] = '\0';
-    return strlen(text) == n && wb_number_parse(text, value);
+    for (size_t i = 0; i < cell.n; i++)
+        text[i] = comma && cell.text[i] == comma ? '.' : cell.text[i];
+    text[cell.n] = '\0';
+    return strlen(text) == cell.n && wb_number_parse(text, value);
 }
 
-bool wb_cells_number(const char *cell, size_t n, char comma, double *value)
+bool wb_cells_number(struct wb_span cell, char comma, double *value)
 {
     static const double powers[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                     1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
-    const char *at = cell;
-    const char *const end = cell + n;
-    const bool negative = n > 0 && *at == '-';
-    at += n > 0 && (*at == '-' || *at == '+');
+    const char *at = cell.text, *const end = at + cell.n;
+    const bool negative = at < end && *at == '-';
+    at += at < end && (*at == '-' || *at == '+');
     uint64_t digits = 0;
     int n_digits = 0, n_decimals = 0;
     bool point = false;
@@ -225,14 +211,14 @@ bool wb_cells_number(const char *cell, size_t n, char comma, double *value)
         } else if (!point && (*at == '.' || (comma && *at == comma))) {
             point = true;
         } else {
-            return slow_number(cell, n, comma, value);
+            return slow_number(cell, comma, value);
         }
     }
     if (n_digits == 0)
         return false;
     /* Up to 15 digits both are exact, and their quotient is the nearest double. */
     if (n_digits > 15)
-        return slow_number(cell, n, comma, value);
+        return slow_number(cell, comma, value);
     const double magnitude = (double)digits / powers[n_decimals];
     *value = negative ? -magnitude : magnitude;
     return true;

@@ -7,6 +7,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* A line or a cell: part of a text, without a NUL at its end. */
+struct wb_span {
+    const char *text;
+    size_t n;
+};
+
 /* A text, read line by line. Line ends are LF, CR, CR LF and CR CR LF; a byte order mark is
  * skipped. */
 struct wb_cells_lines {
@@ -20,7 +26,7 @@ struct wb_cells_lines {
 /* Begins to read. UTF-16 is converted to bytes; characters beyond ASCII become '?'. */
 void wb_cells_lines_begin(struct wb_cells_lines *lines, const uint8_t *bytes, size_t n);
 /* The next line without its end; false at the end of the text. */
-bool wb_cells_lines_next(struct wb_cells_lines *lines, const char **line, size_t *n);
+bool wb_cells_lines_next(struct wb_cells_lines *lines, struct wb_span *line);
 void wb_cells_lines_release(struct wb_cells_lines *lines);
 
 /* The cells of a line. */
@@ -30,18 +36,21 @@ struct wb_cells {
     size_t column;        /* of the last cell returned, from 1 */
 };
 
-void wb_cells_begin(struct wb_cells *cells, const char *line, size_t n, char delimiter);
+void wb_cells_begin(struct wb_cells *cells, struct wb_span line, char delimiter);
 /* The next cell without blanks and quotes around it; false after the last. */
-bool wb_cells_next(struct wb_cells *cells, const char **cell, size_t *n);
+bool wb_cells_next(struct wb_cells *cells, struct wb_span *cell);
 /* Whether the line contains only delimiters and blanks. */
-bool wb_cells_blank(const char *line, size_t n, char delimiter);
+bool wb_cells_blank(struct wb_span line, char delimiter);
 
 /* Case-insensitive comparison with a word, and with the beginning of the cell. */
-bool wb_cells_equal(const char *cell, size_t n, const char *word);
-bool wb_cells_begins(const char *cell, size_t n, const char *word);
+bool wb_cells_equal(struct wb_span cell, const char *word);
+bool wb_cells_begins(struct wb_span cell, const char *word);
+
+/* Whether a word is one of `words`, which blanks separate. */
+bool wb_cells_lists(const char *words, const char *word);
 
 /* Reads a cell that is a decimal number with '.' or `comma` (0: none) as decimal sign. Gives the
  * same double as strtod(). False if the cell is not a number. */
-bool wb_cells_number(const char *cell, size_t n, char comma, double *value);
+bool wb_cells_number(struct wb_span cell, char comma, double *value);
 
 #endif

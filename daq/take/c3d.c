@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
+#include "base/config.h"
 #include "base/memory.h"
 #include "daq/take/take_reader.h"
 
@@ -21,7 +21,6 @@
 
 #define BLOCK 512
 #define MOST_POINTS 65535
-#define LARGEST_POSITION 1e4 /* m */
 #define MOST_STEPS 20000000
 
 enum processor {
@@ -106,8 +105,7 @@ static double get_float(const struct reading *reading, const uint8_t *at)
  * it is truncated. */
 struct record {
     int id; /* negative: a group with number -id */
-    const uint8_t *name;
-    size_t n_name;
+    struct wb_span name;
     size_t body; /* offset after the word that points to the next record */
     size_t next; /* offset; 0: none */
 };
@@ -117,22 +115,15 @@ static bool read_record(const struct reading *reading, size_t at, struct record 
     if (at + 2 > reading->n)
         return false;
     const int length = (int8_t)reading->bytes[at];
-    record->n_name = (size_t)abs(length);
     record->id = (int8_t)reading->bytes[at + 1];
-    record->name = reading->bytes + at + 2;
-    const size_t word = at + 2 + record->n_name;
+    record->name = (struct wb_span){(const char *)reading->bytes + at + 2, (size_t)abs(length)};
+    const size_t word = at + 2 + record->name.n;
     if (length == 0 || record->id == 0 || word + 2 > reading->n)
         return false;
     const uint16_t offset = get_word(reading, reading->bytes + word);
     record->body = word + 2;
     record->next = offset >= 2 ? word + offset : 0;
     return true;
-}
-
-static bool is_named(const struct record *record, const char *name)
-{
-    return record->n_name == strlen(name) &&
-           strncasecmp((const char *)record->name, name, record->n_name) == 0;
 }
 
 static bool read_parameter(const struct reading *reading, size_t at, struct parameter *parameter)
@@ -167,12 +158,12 @@ static bool find(struct reading *reading, const char *group, const char *name,
          at = record.next) {
         if (reading->steps++ > MOST_STEPS)
             return false;
-        if (record.id < 0 && is_named(&record, group))
+        if (record.id < 0 && wb_cells_equal(record.name, group))
             id = -record.id;
     }
     for (size_t at = reading->parameters; at && id && read_record(reading, at, &record);
          at = record.next) {
-        if (record.id == id && is_named(&record, name))
+        if (record.id == id && wb_cells_equal(record.name, name))
             return read_parameter(reading, record.body, parameter);
     }
     return false;
@@ -219,7 +210,7 @@ static bool find_count(struct reading *reading, const char *group, const char *n
 
 /* Finds the i-th text of a list, which continues in LABELS2, LABELS3, ... after 255 entries. */
 static bool find_text(struct reading *reading, const char *group, const char *name, size_t i,
-                      const char **text, size_t *n)
+                      struct wb_span *text)
 {
     char list[16];
     for (int k = 1; k < 100; k++) {
@@ -233,8 +224,8 @@ static bool find_text(struct reading *reading, const char *group, const char *na
                                : length > 0               ? parameter.n_items / length
                                                           : 0;
         if (i < n_texts) {
-            *text = (const char *)parameter.data + i * length;
-            *n = strnlen(*text, length);
+            const char *const at = (const char *)parameter.data + i * length;
+            *text = (struct wb_span){at, strnlen(at, length)};
             return true;
         }
         i -= n_texts;
@@ -265,43 +256,44 @@ static enum wb_status find_parameters(struct reading *reading)
     return WB_OK;
 }
 
+/* Reads a count of 32 bits, stored as two unsigned words; the upper one may be missing. */
+static bool find_long(struct reading *reading, const char *name, double *count)
+{
+    struct parameter parameter;
+    double low, high = 0.0;
+    if (!find(reading, "TRIAL", name, &parameter) || parameter.type != 2 ||
+        !get_item(reading, &parameter, 0, &low))
+        return false;
+    (void)get_item(reading, &parameter, 1, &high);
+    *count = low + (low < 0.0 ? 65536.0 : 0.0) + 65536.0 * high;
+    return true;
+}
+
 /* Determines the number of frames, for which 16 bits in header and POINT:FRAMES may be too few. */
 static void count_frames(struct reading *reading)
 {
+    static const char *const counts[] = {"LONG_FRAMES", "FRAMES"};
     const uint8_t *const header = reading->bytes;
     const size_t first = get_word(reading, header + 6), last = get_word(reading, header + 8);
-    struct parameter start, end;
-    double low, high, low_end, high_end;
-    size_t count = 0;
+    double from, to;
     reading->first = (int32_t)first;
-    if (find(reading, "TRIAL", "ACTUAL_START_FIELD", &start) &&
-        find(reading, "TRIAL", "ACTUAL_END_FIELD", &end) && start.type == 2 && end.type == 2 &&
-        get_item(reading, &start, 0, &low) && get_item(reading, &end, 0, &low_end)) {
-        high = high_end = 0.0;
-        (void)get_item(reading, &start, 1, &high);
-        (void)get_item(reading, &end, 1, &high_end);
-        const double from = low + (low < 0.0 ? 65536.0 : 0.0) + 65536.0 * high;
-        const double to = low_end + (low_end < 0.0 ? 65536.0 : 0.0) + 65536.0 * high_end;
-        if (from >= 0.0 && to >= from && to < 1e9) {
-            reading->n_frames = (size_t)(to - from) + 1;
-            reading->first = (int32_t)from;
-            return;
-        }
+    if (find_long(reading, "ACTUAL_START_FIELD", &from) &&
+        find_long(reading, "ACTUAL_END_FIELD", &to) && from >= 0.0 && to >= from && to < 1e9) {
+        reading->n_frames = (size_t)(to - from) + 1;
+        reading->first = (int32_t)from;
+        return;
     }
-    if (find_count(reading, "POINT", "LONG_FRAMES", &count) && count > 0)
-        reading->n_frames = count;
-    else if (find_count(reading, "POINT", "FRAMES", &count) && count > 0)
-        reading->n_frames = count;
-    else
-        reading->n_frames = last >= first ? last - first + 1 : 0;
+    for (size_t i = 0; i < WB_COUNT(counts); i++)
+        if (find_count(reading, "POINT", counts[i], &reading->n_frames) && reading->n_frames > 0)
+            return;
+    reading->n_frames = last >= first ? last - first + 1 : 0;
 }
 
 static enum wb_status read_layout(struct reading *reading)
 {
     double scale, rate;
     size_t block, per_frame = get_word(reading, reading->bytes + 4);
-    const char *unit;
-    size_t n_unit;
+    struct wb_span unit;
     if (!find_count(reading, "POINT", "USED", &reading->n_points))
         reading->n_points = get_word(reading, reading->bytes + 2);
     if (reading->n_points == 0 || reading->n_points > MOST_POINTS)
@@ -321,12 +313,12 @@ static enum wb_status read_layout(struct reading *reading)
         return reject_parameter(reading, "POINT:RATE", "expected 0.5 to 1e6 frames/s, not %g",
                                 rate);
     reading->take->rate = rate;
-    if (!find_text(reading, "POINT", "UNITS", 0, &unit, &n_unit))
+    if (!find_text(reading, "POINT", "UNITS", 0, &unit))
         return reject_parameter(reading, "POINT:UNITS", "%s", "missing: lengths have no unit");
-    reading->unit = wb_take_length_unit(unit, n_unit);
+    reading->unit = wb_take_length_unit(unit);
     if (!(reading->unit > 0.0)) {
         char word[24];
-        wb_take_copy_name(word, sizeof word, unit, n_unit);
+        wb_take_copy_name(word, sizeof word, unit);
         return reject_parameter(reading, "POINT:UNITS", "unknown unit of length '%s'", word);
     }
     if (!find_count(reading, "POINT", "DATA_START", &block) || block == 0)
@@ -352,22 +344,19 @@ static enum wb_status read_layout(struct reading *reading)
     return WB_OK;
 }
 
-static enum wb_status read_points(struct reading *reading)
+static void read_points(struct reading *reading)
 {
     for (size_t i = 0; i < reading->n_points; i++) {
-        const char *text;
-        size_t n;
+        struct wb_span text;
         char name[32];
-        if (!find_text(reading, "POINT", "LABELS", i, &text, &n)) {
+        if (!find_text(reading, "POINT", "LABELS", i, &text)) {
             snprintf(name, sizeof name, "Unlabeled %zu", i + 1);
-            text = name;
-            n = strlen(name);
+            text = (struct wb_span){name, strlen(name)};
         }
-        const bool unlabelled = (n >= 9 && strncasecmp(text, "Unlabeled", 9) == 0) ||
-                                (n >= 1 && text[0] == '*') || n == 0;
-        wb_take_add_point(reading->take, unlabelled ? WB_TAKE_UNLABELLED : WB_TAKE_MARKER, text, n);
+        const bool unlabelled =
+            text.n == 0 || *text.text == '*' || wb_cells_begins(text, "Unlabeled");
+        wb_take_add_point(reading->take, unlabelled ? WB_TAKE_UNLABELLED : WB_TAKE_MARKER, text);
     }
-    return WB_OK;
 }
 
 static enum wb_status read_channels(struct reading *reading)
@@ -375,8 +364,7 @@ static enum wb_status read_channels(struct reading *reading)
     const size_t n = reading->n_channels;
     struct parameter scales, offsets;
     double general = 1.0;
-    const char *text;
-    size_t n_text;
+    struct wb_span text;
     if (n == 0)
         return WB_OK;
     reading->take->channels = wb_memory_new(n, sizeof *reading->take->channels);
@@ -385,8 +373,8 @@ static enum wb_status read_channels(struct reading *reading)
     reading->take->n_channels = (int)n;
     reading->take->per_frame = (int)reading->per_frame;
     (void)find_number(reading, "ANALOG", "GEN_SCALE", &general);
-    reading->is_unsigned = find_text(reading, "ANALOG", "FORMAT", 0, &text, &n_text) &&
-                           n_text >= 8 && strncasecmp(text, "UNSIGNED", 8) == 0;
+    reading->is_unsigned =
+        find_text(reading, "ANALOG", "FORMAT", 0, &text) && wb_cells_begins(text, "UNSIGNED");
     const bool has_scales = find(reading, "ANALOG", "SCALE", &scales);
     const bool has_offsets = find(reading, "ANALOG", "OFFSET", &offsets);
     for (size_t i = 0; i < n; i++) {
@@ -402,10 +390,10 @@ static enum wb_status read_channels(struct reading *reading)
         if (!isfinite(reading->scales[i]) || !isfinite(reading->offsets[i]))
             return reject_parameter(reading, "ANALOG:SCALE", "channel %zu has no finite scale",
                                     i + 1);
-        if (find_text(reading, "ANALOG", "LABELS", i, &text, &n_text))
-            wb_take_copy_name(channel->name, sizeof channel->name, text, n_text);
-        if (find_text(reading, "ANALOG", "UNITS", i, &text, &n_text))
-            wb_take_copy_name(channel->unit, sizeof channel->unit, text, n_text);
+        if (find_text(reading, "ANALOG", "LABELS", i, &text))
+            wb_take_copy_name(channel->name, sizeof channel->name, text);
+        if (find_text(reading, "ANALOG", "UNITS", i, &text))
+            wb_take_copy_name(channel->unit, sizeof channel->unit, text);
     }
     return WB_OK;
 }
@@ -432,7 +420,7 @@ static enum wb_status read_point(struct reading *reading, size_t point, const ui
             return WB_OK;
         zero &= raw == 0.0;
         position[k] = raw * factor;
-        if (!(fabs(position[k]) <= LARGEST_POSITION))
+        if (!(fabs(position[k]) <= WB_TAKE_LARGEST_POSITION))
             return reject_at(reading, at - reading->bytes,
                              "implausible position of a marker: %g m; check POINT:UNITS",
                              position[k]);
@@ -447,8 +435,8 @@ static enum wb_status read_frame(struct reading *reading, size_t frame, const ui
 {
     const size_t word = reading->is_real ? 4 : 2;
     struct wb_take *const take = reading->take;
-    wb_take_add_frame(take, reading->first + (int32_t)frame,
-                      (double)(reading->first + (int32_t)frame) / take->rate);
+    (void)wb_take_add_frame(take, reading->first + (int32_t)frame,
+                            (double)(reading->first + (int32_t)frame) / take->rate);
     for (size_t i = 0; i < reading->n_points; i++, at += 4 * word)
         WB_TRY(read_point(reading, i, at));
     const size_t n = reading->n_channels * reading->per_frame;
@@ -496,10 +484,9 @@ static enum wb_status read_all(struct reading *reading)
 {
     WB_TRY(find_parameters(reading));
     WB_TRY(read_layout(reading));
-    WB_TRY(read_points(reading));
+    read_points(reading);
     WB_TRY(read_channels(reading));
-    WB_TRY(read_data(reading));
-    return wb_take_finish(reading->take, reading->name, reading->why);
+    return read_data(reading);
 }
 
 static enum wb_status read_c3d(struct wb_take *take, const char *name, const uint8_t *bytes,
@@ -510,9 +497,7 @@ static enum wb_status read_c3d(struct wb_take *take, const char *name, const uin
     const enum wb_status status = read_all(&reading);
     free(reading.offsets);
     free(reading.scales);
-    if (status != WB_OK)
-        wb_take_release(take);
-    return status;
+    return wb_take_finish(take, status, name, why);
 }
 
 const struct wb_take_reader wb_c3d = {.name = "c3d", .is = is_c3d, .read = read_c3d};

@@ -81,45 +81,46 @@ size_t wb_take_frame_at(const struct wb_take *take, size_t frame, struct wb_moca
 
 /* --- for readers --- */
 
-void wb_take_copy_name(char *to, size_t size, const char *from, size_t n)
+void wb_take_copy_name(char *to, size_t size, struct wb_span name)
 {
-    while (n > 0 && (isspace((unsigned char)from[n - 1]) || from[n - 1] == '\0'))
-        n--;
-    while (n > 0 && isspace((unsigned char)*from)) {
-        from++;
-        n--;
-    }
-    if (n >= size)
-        n = size - 1;
+    while (name.n > 0 &&
+           (isspace((unsigned char)name.text[name.n - 1]) || name.text[name.n - 1] == '\0'))
+        name.n--;
+    for (; name.n > 0 && isspace((unsigned char)*name.text); name.n--)
+        name.text++;
+    const size_t n = name.n < size ? name.n : size - 1;
     for (size_t i = 0; i < n; i++)
-        to[i] = from[i] >= ' ' && from[i] <= '~' ? from[i] : '?';
+        to[i] = name.text[i] >= ' ' && name.text[i] <= '~' ? name.text[i] : '?';
     to[n] = '\0';
 }
 
-struct wb_take_quoted wb_take_quote(const char *cell, size_t n)
+struct wb_take_quoted wb_take_quote(struct wb_span cell)
 {
     struct wb_take_quoted quoted;
-    wb_take_copy_name(quoted.text, sizeof quoted.text, cell, n);
+    wb_take_copy_name(quoted.text, sizeof quoted.text, cell);
     return quoted;
 }
 
-size_t wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, const char *name, size_t n)
+size_t wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, struct wb_span name)
 {
     take->points =
         wb_memory_room(take->points, &take->capacity[0], take->n_points + 1, sizeof *take->points);
     struct wb_take_point *const point = &take->points[take->n_points];
     *point = (struct wb_take_point){.kind = kind};
-    wb_take_copy_name(point->name, sizeof point->name, name, n);
+    wb_take_copy_name(point->name, sizeof point->name, name);
     return take->n_points++;
 }
 
-void wb_take_add_frame(struct wb_take *take, int32_t number, double t)
+bool wb_take_add_frame(struct wb_take *take, int32_t number, double t)
 {
+    const size_t n = take->n_frames;
+    if (n > 0 && !(number > take->frames[n - 1].number && t > take->frames[n - 1].t))
+        return false;
     /* One more element, for the end of the last frame. */
-    take->frames =
-        wb_memory_room(take->frames, &take->capacity[1], take->n_frames + 2, sizeof *take->frames);
+    take->frames = wb_memory_room(take->frames, &take->capacity[1], n + 2, sizeof *take->frames);
     take->frames[take->n_frames++] =
         (struct wb_take_frame){.number = number, .t = t, .first = take->n_places};
+    return true;
 }
 
 void wb_take_add_place(struct wb_take *take, uint32_t point, const double position[3])
@@ -147,13 +148,6 @@ float *wb_take_add_analog(struct wb_take *take, size_t n)
     return take->analog + used;
 }
 
-void wb_take_skip(struct wb_take *take, size_t line)
-{
-    take->skipped_rows++;
-    if (!take->first_skipped)
-        take->first_skipped = line;
-}
-
 /* Recomputes times from frame numbers if they agree within rounding. A file may number the frames
  * of the cameras and contain every n-th of them. */
 static void unround_times(struct wb_take *take)
@@ -177,10 +171,15 @@ static void unround_times(struct wb_take *take)
         frames[i].t = offset + (double)frames[i].number / take->rate;
 }
 
-enum wb_status wb_take_finish(struct wb_take *take, const char *name, struct wb_reason *why)
+enum wb_status wb_take_finish(struct wb_take *take, enum wb_status status, const char *name,
+                              struct wb_reason *why)
 {
-    if (take->n_frames == 0)
-        return wb_fail_to(why, WB_ERR_FORMAT, "%s: the file contains no frame", name);
+    if (status == WB_OK && take->n_frames == 0)
+        status = wb_fail_to(why, WB_ERR_FORMAT, "%s: the file contains no frame", name);
+    if (status != WB_OK) {
+        wb_take_release(take);
+        return status;
+    }
     struct wb_take_frame *const frames = take->frames;
     frames[take->n_frames].first = take->n_places;
     /* Numbers increase by 1, or by the number of camera frames per frame in the file. */
@@ -200,37 +199,25 @@ enum wb_status wb_take_finish(struct wb_take *take, const char *name, struct wb_
     return WB_OK;
 }
 
-double wb_take_length_unit(const char *text, size_t n)
+double wb_take_length_unit(struct wb_span name)
 {
     static const struct {
-        const char *name;
+        const char *names;
         double factor;
     } units[] = {
-        {"m", 1.0},
-        {"meter", 1.0},
-        {"meters", 1.0},
-        {"metre", 1.0},
-        {"metres", 1.0},
-        {"mm", 1e-3},
-        {"millimeter", 1e-3},
-        {"millimeters", 1e-3},
-        {"millimetre", 1e-3},
-        {"millimetres", 1e-3},
-        {"cm", 1e-2},
-        {"centimeter", 1e-2},
-        {"centimeters", 1e-2},
-        {"centimetre", 1e-2},
-        {"centimetres", 1e-2},
-        {"inch", 0.0254},
-        {"inches", 0.0254},
-        {"in", 0.0254},
+        {"m meter meters metre metres", 1.0},
+        {"mm millimeter millimeters millimetre millimetres", 1e-3},
+        {"cm centimeter centimeters centimetre centimetres", 1e-2},
+        {"inch inches in", 0.0254},
     };
     char word[24];
-    if (n >= sizeof word)
+    if (name.n >= sizeof word)
         return 0.0;
-    wb_take_copy_name(word, sizeof word, text, n);
+    wb_take_copy_name(word, sizeof word, name);
+    for (char *letter = word; *letter; letter++)
+        *letter = (char)tolower((unsigned char)*letter);
     for (size_t i = 0; i < WB_COUNT(units); i++)
-        if (strcasecmp(word, units[i].name) == 0)
+        if (wb_cells_lists(units[i].names, word))
             return units[i].factor;
     return 0.0;
 }

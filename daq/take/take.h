@@ -16,6 +16,7 @@
 #include <stdint.h>
 
 #include "base/reason.h"
+#include "daq/protocol/cells.h"
 #include "daq/protocol/sample.h"
 
 enum wb_take_kind {
@@ -24,6 +25,8 @@ enum wb_take_kind {
     WB_TAKE_SOLVED,     /* computed from a rigid body, also while the marker is lost */
     WB_TAKE_BODY        /* the origin of a rigid body or bone */
 };
+
+#define WB_TAKE_LARGEST_POSITION 1e4 /* m, that a reader accepts */
 
 struct wb_take_point {
     char name[64]; /* truncated, printable ASCII */
@@ -79,28 +82,28 @@ size_t wb_take_frame_at(const struct wb_take *take, size_t frame, struct wb_moca
 
 /* --- for readers --- */
 
-/* Adds a point and returns its index. `name` need not end with NUL. */
-size_t wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, const char *name, size_t n);
-void wb_take_add_frame(struct wb_take *take, int32_t number, double t);
+/* Adds a point and returns its index. */
+size_t wb_take_add_point(struct wb_take *take, enum wb_take_kind kind, struct wb_span name);
+/* Adds a frame; false, and nothing is added, if number and time do not exceed those of the last. */
+bool wb_take_add_frame(struct wb_take *take, int32_t number, double t);
 /* Adds a position to the last frame. */
 void wb_take_add_place(struct wb_take *take, uint32_t point, const double position[3]);
 /* Removes the last frame. */
 void wb_take_drop_frame(struct wb_take *take);
 /* Allocates n more analogue readings, which the caller fills in. */
 float *wb_take_add_analog(struct wb_take *take, size_t n);
-/* Counts a skipped row. */
-void wb_take_skip(struct wb_take *take, size_t line);
-/* Completes the take: ends the last frame, counts jumps, and recomputes rounded times. */
-WB_MUST_CHECK enum wb_status wb_take_finish(struct wb_take *take, const char *name,
-                                            struct wb_reason *why);
+/* Completes a take that was read with `status`: ends the last frame, counts jumps, and recomputes
+ * rounded times. Releases the take on failure. */
+WB_MUST_CHECK enum wb_status wb_take_finish(struct wb_take *take, enum wb_status status,
+                                            const char *name, struct wb_reason *why);
 /* Copies a name: characters other than printable ASCII become '?', outer blanks are removed. */
-void wb_take_copy_name(char *to, size_t size, const char *from, size_t n);
+void wb_take_copy_name(char *to, size_t size, struct wb_span name);
 /* The beginning of a cell, for a message. */
 struct wb_take_quoted {
     char text[40];
 };
-struct wb_take_quoted wb_take_quote(const char *cell, size_t n);
+struct wb_take_quoted wb_take_quote(struct wb_span cell);
 /* m per unit of length, for its name in any spelling; 0: unknown. */
-double wb_take_length_unit(const char *text, size_t n);
+double wb_take_length_unit(struct wb_span name);
 
 #endif
