@@ -1,5 +1,4 @@
 #include "daq/take/take.h"
-#include "daq/take/take_private.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -31,21 +30,6 @@ void wb_take_release(struct wb_take *take)
 bool wb_take_is_measured(enum wb_take_kind kind)
 {
     return kind == WB_TAKE_MARKER || kind == WB_TAKE_UNLABELLED;
-}
-
-double wb_take_missing(const struct wb_take *take)
-{
-    size_t n[2] = {0}, seen[2] = {0};
-    for (size_t i = 0; i < take->n_points; i++) {
-        const bool measured = wb_take_is_measured(take->points[i].kind);
-        if (!measured && take->points[i].kind != WB_TAKE_BODY)
-            continue;
-        n[measured]++;
-        seen[measured] += take->points[i].n_seen;
-    }
-    const bool which = n[true] > 0;
-    const double all = (double)n[which] * (double)take->n_frames;
-    return all > 0.0 ? 1.0 - (double)seen[which] / all : 0.0;
 }
 
 size_t wb_take_frame_at(const struct wb_take *take, size_t frame, struct wb_mocap_frame *out)

@@ -5,10 +5,10 @@
 
 #include <math.h>
 
-#include "daq/take/take_private.h"
 #include "daq/take/take_reader.h"
 #include "tests/daq/fuzz.h"
 #include "tests/daq/take_example.h"
+#include "tests/daq/take_missing.h"
 
 static inline void fuzz_check_take(const struct wb_take *take)
 {
@@ -26,7 +26,7 @@ static inline void fuzz_check_take(const struct wb_take *take)
         for (int k = 0; k < 3; k++)
             FUZZ_REQUIRE(fabsf(take->places[i].position[k]) <= 1.01e4F);
     }
-    FUZZ_REQUIRE(wb_take_missing(take) <= 1.0);
+    FUZZ_REQUIRE(take_missing(take) <= 1.0);
 }
 
 static inline int fuzz_take(const struct wb_take_reader *reader, const uint8_t *bytes, size_t n)

@@ -1,9 +1,9 @@
 /* Takes of motion capture from files: layouts, special cases and errors of each format. */
 #include <stdlib.h>
 
-#include "daq/take/take_private.h"
 #include "daq/take/take_reader.h"
 #include "tests/daq/take_example.h"
+#include "tests/daq/take_missing.h"
 #include "tests/messages.h"
 
 #define FRAMES 20
@@ -71,7 +71,7 @@ static void assert_example(double tolerance)
         }
         assert_int_equal(i, take.frames[f + 1].first);
     }
-    assert_close(wb_take_missing(&take), FRAMES / 5 / (3.0 * FRAMES), 1e-12);
+    assert_close(take_missing(&take), FRAMES / 5 / (3.0 * FRAMES), 1e-12);
 }
 
 static void every_layout_of_motive_gives_the_same_take(void **state)

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 #include "base/file.h"
-#include "daq/take/take_private.h"
 #include "daq/take/take_reader.h"
 #include "tests/check.h"
+#include "tests/daq/take_missing.h"
 
 #define SKIPPED 77
 
@@ -77,7 +77,7 @@ static void motive_1_23_jumps_and_misses_6_75_percent(void **state)
     assert_int_equal(take.jumps, 4);
     assert_nothing_left_out();
     assert_int_equal(count(&take, WB_TAKE_BODY, false), 3);
-    assert_close(100.0 * wb_take_missing(&take), 6.75, 5e-3);
+    assert_close(100.0 * take_missing(&take), 6.75, 5e-3);
 }
 
 static const char *const samples[] = {"pc_int",   "pc_real", "dec_int",
@@ -95,7 +95,7 @@ static void six_c3d_files_decode_to_the_same_points(void **state)
         struct wb_take *const to = i == 0 ? &other : &take;
         snprintf(name, sizeof name, "c3d/ktk_data_c3d_test_suite_Sample02_%s.c3d", samples[i]);
         read_to(to, name, "c3d");
-        assert_close(100.0 * wb_take_missing(to), 7.116, 5e-4);
+        assert_close(100.0 * take_missing(to), 7.116, 5e-4);
         if (i == 0)
             continue;
         assert_nothing_left_out();
@@ -148,7 +148,7 @@ static void trc_files_agree_with_their_headers(void **state)
     for (size_t i = 0; i < take.n_points; i++)
         unseen += take.points[i].n_seen == 0;
     assert_int_equal(unseen, 1);
-    assert_close(wb_take_missing(&take), 1.0 / 9.0, 1e-12);
+    assert_close(take_missing(&take), 1.0 / 9.0, 1e-12);
 }
 
 int main(void)
