@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,11 +11,13 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "daq/protocol/cells.h"
 #include "daq/protocol/loadcell_line.h"
 
 #define WB_LOG_DOMAIN "columns"
 
 static const char *const measured_names[] = {"time", "force", "travel", "strain"};
+static const char *const usual_units[] = {"s", "N", "mm", "%"};
 
 const char *wb_table_columns_name(enum wb_measured measured)
 {
@@ -23,26 +26,28 @@ const char *wb_table_columns_name(enum wb_measured measured)
 
 /* --- units --- */
 
-struct unit {
+/* Units, by their names. Those of force are also the units of load cells. */
+static const struct unit {
     enum wb_measured measured;
-    const char *name;
+    const char *names;
     double factor;
-};
-
-static const struct unit units[] = {
-    {WB_MEASURED_TIME, "s", 1.0},         {WB_MEASURED_TIME, "sec", 1.0},
-    {WB_MEASURED_TIME, "secs", 1.0},      {WB_MEASURED_TIME, "Sec", 1.0},
-    {WB_MEASURED_TIME, "second", 1.0},    {WB_MEASURED_TIME, "seconds", 1.0},
-    {WB_MEASURED_TIME, "Sekunden", 1.0},  {WB_MEASURED_TIME, "ms", 1e-3},
-    {WB_MEASURED_TIME, "us", 1e-6},       {WB_MEASURED_TIME, "min", 60.0},
-    {WB_MEASURED_TIME, "h", 3600.0},      {WB_MEASURED_FORCE, "daN", 10.0},
-    {WB_MEASURED_FORCE, "cN", 1e-2},      {WB_MEASURED_FORCE, "MN", 1e6},
-    {WB_MEASURED_FORCE, "cn", 1e-2},      {WB_MEASURED_TRAVEL, "mm", WB_MM},
-    {WB_MEASURED_TRAVEL, "cm", 1e-2},     {WB_MEASURED_TRAVEL, "m", 1.0},
-    {WB_MEASURED_TRAVEL, "um", 1e-6},     {WB_MEASURED_TRAVEL, "in", 0.0254},
-    {WB_MEASURED_TRAVEL, "inch", 0.0254}, {WB_MEASURED_TRAVEL, "mil", 2.54e-5},
-    {WB_MEASURED_STRAIN, "%", 1e-2},      {WB_MEASURED_STRAIN, "mm/mm", 1.0},
-    {WB_MEASURED_STRAIN, "m/m", 1.0},     {WB_MEASURED_STRAIN, "1", 1.0},
+} units[] = {
+    {WB_MEASURED_TIME, "s sec secs Sec second seconds Sekunden", 1.0},
+    {WB_MEASURED_TIME, "ms", 1e-3},
+    {WB_MEASURED_TIME, "us", 1e-6},
+    {WB_MEASURED_TIME, "min", 60.0},
+    {WB_MEASURED_TIME, "h", 3600.0},
+    {WB_MEASURED_FORCE, "daN", 10.0},
+    {WB_MEASURED_FORCE, "cN cn", 1e-2},
+    {WB_MEASURED_FORCE, "MN", 1e6},
+    {WB_MEASURED_TRAVEL, "mm", WB_MM},
+    {WB_MEASURED_TRAVEL, "cm", 1e-2},
+    {WB_MEASURED_TRAVEL, "m", 1.0},
+    {WB_MEASURED_TRAVEL, "um", 1e-6},
+    {WB_MEASURED_TRAVEL, "in inch", 0.0254},
+    {WB_MEASURED_TRAVEL, "mil", 2.54e-5},
+    {WB_MEASURED_STRAIN, "%", 1e-2},
+    {WB_MEASURED_STRAIN, "mm/mm m/m 1", 1.0},
     {WB_MEASURED_STRAIN, "um/m", 1e-6},
 };
 
@@ -64,7 +69,7 @@ static void plain_unit(char out[16], const char *text)
 static bool find_unit(const char *text, double gravity, enum wb_measured *measured, double *factor)
 {
     for (size_t i = 0; i < WB_COUNT(units); i++) {
-        if (strcmp(units[i].name, text) == 0) {
+        if (wb_cells_lists(units[i].names, text)) {
             *measured = units[i].measured;
             *factor = units[i].factor;
             return true;
@@ -151,55 +156,29 @@ static void read_header(struct header *header, const struct wb_text_table_column
 
 struct word {
     enum wb_measured measured;
-    const char *text;
+    const char *texts;
     int points;
 };
 
 /* The word with the highest score decides. */
 static const struct word words[] = {
-    {WB_MEASURED_TIME, "time", 10},
-    {WB_MEASURED_TIME, "zeit", 10},
     {WB_MEASURED_TIME,
-     "pr\xc3\xbc"
-     "fzeit",
+     "time zeit pr\xc3\xbc"
+     "fzeit temps tempo tiempo",
      10},
-    {WB_MEASURED_TIME, "temps", 10},
-    {WB_MEASURED_TIME, "tempo", 10},
-    {WB_MEASURED_TIME, "tiempo", 10},
     {WB_MEASURED_TIME, "elapsed", 9},
     {WB_MEASURED_TIME, "t", 8},
-    {WB_MEASURED_FORCE, "load", 10},
-    {WB_MEASURED_FORCE, "force", 10},
-    {WB_MEASURED_FORCE, "kraft", 10},
-    {WB_MEASURED_FORCE, "standardkraft", 10},
     {WB_MEASURED_FORCE,
-     "pr\xc3\xbc"
-     "fkraft",
+     "load force kraft standardkraft pr\xc3\xbc"
+     "fkraft fuerza forza carga charge",
      10},
-    {WB_MEASURED_FORCE, "fuerza", 10},
-    {WB_MEASURED_FORCE, "forza", 10},
-    {WB_MEASURED_FORCE, "carga", 10},
-    {WB_MEASURED_FORCE, "charge", 10},
     {WB_MEASURED_FORCE, "f", 8},
-    {WB_MEASURED_TRAVEL, "travel", 10},
-    {WB_MEASURED_TRAVEL, "extension", 10},
-    {WB_MEASURED_TRAVEL, "elongation", 10},
-    {WB_MEASURED_TRAVEL, "displacement", 10},
-    {WB_MEASURED_TRAVEL, "deflection", 10},
-    {WB_MEASURED_TRAVEL, "position", 10},
-    {WB_MEASURED_TRAVEL, "stroke", 10},
-    {WB_MEASURED_TRAVEL, "crosshead", 10},
-    {WB_MEASURED_TRAVEL, "weg", 10},
-    {WB_MEASURED_TRAVEL, "standardweg", 10},
-    {WB_MEASURED_TRAVEL, "traversenweg", 10},
-    {WB_MEASURED_TRAVEL, "durchbiegung", 10},
-    {WB_MEASURED_TRAVEL, "desplazamiento", 10},
     {WB_MEASURED_TRAVEL,
-     "d\xc3\xa9"
+     "travel extension elongation displacement deflection position stroke crosshead weg "
+     "standardweg traversenweg durchbiegung desplazamiento d\xc3\xa9"
      "placement",
      10},
-    {WB_MEASURED_STRAIN, "strain", 10},
-    {WB_MEASURED_STRAIN, "dehnung", 10},
+    {WB_MEASURED_STRAIN, "strain dehnung", 10},
 };
 
 /* Added to the score: among several extensions, the machine's total is preferred to one counted
@@ -210,11 +189,17 @@ static const struct word qualifiers[] = {
     {WB_MEASURED_TRAVEL, "preload", -5},
 };
 
-static bool has_word(const struct header *header, const char *word)
+static bool has_word(const struct header *header, const struct word *word)
 {
     char padded[40];
-    snprintf(padded, sizeof padded, " %s ", word);
-    return strstr(header->words, padded) != NULL;
+    for (const char *at = word->texts; *at; at += strspn(at, " ")) {
+        const size_t n = strcspn(at, " ");
+        snprintf(padded, sizeof padded, " %.*s ", (int)n, at);
+        if (strstr(header->words, padded))
+            return true;
+        at += n;
+    }
+    return false;
 }
 
 /* Score of a column for the quantity `measured`; 0: not suitable. Its unit must be one of that
@@ -228,12 +213,11 @@ static int score(const struct header *header, enum wb_measured measured, double 
         !(find_unit(header->unit, gravity, &of_unit, &factor) && of_unit == measured))
         return 0;
     for (size_t i = 0; i < WB_COUNT(words); i++) {
-        if (words[i].measured == measured && words[i].points > best &&
-            has_word(header, words[i].text))
+        if (words[i].measured == measured && words[i].points > best && has_word(header, &words[i]))
             best = words[i].points;
     }
     for (size_t i = 0; i < WB_COUNT(qualifiers); i++) {
-        if (qualifiers[i].measured == measured && has_word(header, qualifiers[i].text))
+        if (qualifiers[i].measured == measured && has_word(header, &qualifiers[i]))
             more += qualifiers[i].points;
     }
     return best > 0 ? best + more : 0;
@@ -254,20 +238,6 @@ static void list_columns(const struct wb_text_table *table, struct wb_text *text
         wb_text_append(text, ", ...");
 }
 
-static enum wb_status reject(const struct wb_text_table *table, const char *name,
-                             enum wb_status status, const char *message, struct wb_reason *why)
-{
-    struct wb_text columns = {0};
-    list_columns(table, &columns);
-    const enum wb_status refused =
-        wb_fail_to(why, status, "%s:%d: %s; the columns are %s", name,
-                   table->header_line ? table->header_line : 1, message, wb_text_string(&columns));
-    wb_text_release(&columns);
-    return refused;
-}
-
-/* --- search --- */
-
 struct search {
     const struct wb_text_table *table;
     const char *name;
@@ -275,29 +245,44 @@ struct search {
     struct wb_reason *why;
 };
 
+static enum wb_status reject(const struct search *search, enum wb_status status, const char *format,
+                             ...) __attribute__((format(printf, 3, 4)));
+
+/* Fails with a message that ends in a list of the columns. */
+static enum wb_status reject(const struct search *search, enum wb_status status, const char *format,
+                             ...)
+{
+    const int line = search->table->header_line;
+    char message[256];
+    struct wb_text columns = {0};
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    list_columns(search->table, &columns);
+    (void)wb_fail_to(search->why, status, "%s:%d: %s; the columns are %s", search->name,
+                     line ? line : 1, message, wb_text_string(&columns));
+    wb_text_release(&columns);
+    return status;
+}
+
+/* --- search --- */
+
 static enum wb_status assign(struct wb_table_columns *columns, const struct search *search,
                              enum wb_measured measured, int column, const char *unit)
 {
+    const char *const name = measured_names[measured];
     enum wb_measured of_unit;
-    char message[160];
-    if (unit[0] == '\0') {
-        snprintf(message, sizeof message,
-                 "column %d has no unit: give it, as in --columns %s=%d:%s", column + 1,
-                 measured_names[measured], column + 1,
-                 measured == WB_MEASURED_TIME     ? "s"
-                 : measured == WB_MEASURED_FORCE  ? "N"
-                 : measured == WB_MEASURED_TRAVEL ? "mm"
-                                                  : "%");
-        return reject(search->table, search->name, WB_ERR_FORMAT, message, search->why);
-    }
+    if (unit[0] == '\0')
+        return reject(search, WB_ERR_FORMAT,
+                      "column %d has no unit: give it, as in --columns %s=%d:%s", column + 1, name,
+                      column + 1, usual_units[measured]);
     plain_unit(columns->unit[measured], unit);
     if (!find_unit(columns->unit[measured], search->gravity, &of_unit,
                    &columns->factor[measured]) ||
-        of_unit != measured) {
-        snprintf(message, sizeof message, "the unit '%.15s' of column %d is not a unit of %s", unit,
-                 column + 1, measured_names[measured]);
-        return reject(search->table, search->name, WB_ERR_FORMAT, message, search->why);
-    }
+        of_unit != measured)
+        return reject(search, WB_ERR_FORMAT, "the unit '%.15s' of column %d is not a unit of %s",
+                      unit, column + 1, name);
     columns->column[measured] = column;
     return WB_OK;
 }
@@ -306,7 +291,6 @@ static enum wb_status find_by_header(struct wb_table_columns *columns, const str
 {
     for (int m = 0; m < WB_MEASURED_COUNT; m++) {
         int best = 0, at = -1, second = -1;
-        char message[200];
         struct header header;
         for (int k = 0; k < search->table->n_columns; k++) {
             read_header(&header, &search->table->columns[k]);
@@ -319,12 +303,11 @@ static enum wb_status find_by_header(struct wb_table_columns *columns, const str
                 second = k;
             }
         }
-        if (second >= 0) {
-            snprintf(message, sizeof message,
-                     "columns %d and %d could both be the %s: choose one, as in --columns %s=%d",
-                     at + 1, second + 1, measured_names[m], measured_names[m], at + 1);
-            return reject(search->table, search->name, WB_ERR_FORMAT, message, search->why);
-        }
+        if (second >= 0)
+            return reject(search, WB_ERR_FORMAT,
+                          "columns %d and %d could both be the %s: choose one, as in --columns "
+                          "%s=%d",
+                          at + 1, second + 1, measured_names[m], measured_names[m], at + 1);
         if (at < 0)
             continue;
         read_header(&header, &search->table->columns[at]);
@@ -337,7 +320,6 @@ static enum wb_status find_by_header(struct wb_table_columns *columns, const str
 static enum wb_status read_entry(struct wb_table_columns *columns, const struct search *search,
                                  char *entry)
 {
-    char message[160];
     long number;
     struct header header;
     char *const equals = strchr(entry, '=');
@@ -355,10 +337,8 @@ static enum wb_status read_entry(struct wb_table_columns *columns, const struct 
                           "list of columns: expected time, force, travel or strain with a column "
                           "number, as in time=1,force=2:mN,travel=3, not '%.40s'",
                           entry);
-    if (number < 1 || number > search->table->n_columns) {
-        snprintf(message, sizeof message, "%s=%ld: this column does not exist", entry, number);
-        return reject(search->table, search->name, WB_ERR_ARGUMENT, message, search->why);
-    }
+    if (number < 1 || number > search->table->n_columns)
+        return reject(search, WB_ERR_ARGUMENT, "%s=%ld: this column does not exist", entry, number);
     if (columns->column[measured] >= 0)
         return wb_fail_to(search->why, WB_ERR_ARGUMENT, "list of columns: %s is given twice",
                           entry);
@@ -385,27 +365,16 @@ enum wb_status wb_table_columns_find(struct wb_table_columns *columns,
                                      struct wb_reason *why)
 {
     const struct search search = {table, name, gravity, why};
-    struct wb_table_columns found;
-    memset(&found, 0, sizeof found);
-    for (int m = 0; m < WB_MEASURED_COUNT; m++)
-        found.column[m] = -1;
+    struct wb_table_columns found = {.column = {-1, -1, -1, -1}};
     if (list && *list)
         WB_TRY(find_by_list(&found, &search, list));
     else
         WB_TRY(find_by_header(&found, &search));
-    for (int m = 0; m < WB_MEASURED_COUNT; m++) {
-        char message[160];
-        if (found.column[m] >= 0 || !(needed & WB_MEASURED_BIT(m)))
-            continue;
-        snprintf(message, sizeof message,
-                 "no column of the %s was found: give it, as in --columns %s=1:%s",
-                 measured_names[m], measured_names[m],
-                 m == WB_MEASURED_FORCE    ? "N"
-                 : m == WB_MEASURED_TRAVEL ? "mm"
-                 : m == WB_MEASURED_TIME   ? "s"
-                                           : "%");
-        return reject(table, name, WB_ERR_FORMAT, message, why);
-    }
+    for (int m = 0; m < WB_MEASURED_COUNT; m++)
+        if (found.column[m] < 0 && needed & WB_MEASURED_BIT(m))
+            return reject(&search, WB_ERR_FORMAT,
+                          "no column of the %s was found: give it, as in --columns %s=1:%s",
+                          measured_names[m], measured_names[m], usual_units[m]);
     *columns = found;
     return WB_OK;
 }
@@ -420,14 +389,10 @@ enum wb_status wb_table_columns_value(const struct wb_table_columns *columns,
     *value = (double)NAN;
     if (column < 0)
         return WB_OK;
-    switch (wb_text_table_number(table, row, column, &read)) {
-    case WB_FIELD_NUMBER:
+    const enum wb_text_field field = wb_text_table_number(table, row, column, &read);
+    if (field == WB_FIELD_NUMBER)
         *value = read * columns->factor[measured];
+    if (field != WB_FIELD_TEXT)
         return WB_OK;
-    case WB_FIELD_EMPTY:
-        return WB_OK;
-    case WB_FIELD_TEXT:
-        break;
-    }
     return wb_text_table_reject(table, name, row, column, "expected a number", why);
 }
