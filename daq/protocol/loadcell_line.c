@@ -2,59 +2,47 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
 #include "base/config.h"
 #include "base/number.h"
 #include "base/units.h"
+#include "daq/protocol/cells.h"
 
 #define MAX_LINE 160
 
 /* --- units --- */
 
-struct unit {
-    const char *name;
+/* Units with their spellings. Case-sensitive: a capital M or a lower-case n would be another prefix
+ * or unit. */
+static const struct {
+    const char *names;
     double factor; /* kg or N */
     bool mass;
-};
-
-/* Case-sensitive: a capital M or a lower-case n would be another prefix or unit. */
-static const struct unit units[] = {
-    {"g", WB_G, true},
-    {"G", WB_G, true},
-    {"kg", 1.0, true},
-    {"KG", 1.0, true},
-    {"Kg", 1.0, true},
+} units[] = {
+    {"g G", WB_G, true},
+    {"kg KG Kg", 1.0, true},
     {"mg", WB_MG, true},
     {"t", 1e3, true},
-    {"lb", WB_POUND, true},
-    {"LB", WB_POUND, true},
-    {"lbs", WB_POUND, true},
-    {"oz", WB_OUNCE, true},
-    {"OZ", WB_OUNCE, true},
-    {"ct", 2e-4, true},
-    {"CT", 2e-4, true},
+    {"lb LB lbs", WB_POUND, true},
+    {"oz OZ", WB_OUNCE, true},
+    {"ct CT", 2e-4, true},
     {"N", 1.0, false},
     {"mN", WB_MN, false},
-    {"kN", 1e3, false},
-    {"KN", 1e3, false},
+    {"kN KN", 1e3, false},
     {"uN", 1e-6, false},
-    {"lbF", WB_POUND_FORCE, false},
-    {"lbf", WB_POUND_FORCE, false},
-    {"LBF", WB_POUND_FORCE, false},
-    {"ozF", WB_POUND_FORCE / 16.0, false},
-    {"ozf", WB_POUND_FORCE / 16.0, false},
-    {"gf", WB_G *WB_STANDARD_GRAVITY, false},
-    {"gF", WB_G *WB_STANDARD_GRAVITY, false},
-    {"kgf", WB_STANDARD_GRAVITY, false},
-    {"kgF", WB_STANDARD_GRAVITY, false},
+    {"lbF lbf LBF", WB_POUND_FORCE, false},
+    {"ozF ozf", WB_POUND_FORCE / 16.0, false},
+    {"gf gF", WB_G *WB_STANDARD_GRAVITY, false},
+    {"kgf kgF", WB_STANDARD_GRAVITY, false},
 };
 
 bool wb_line_unit_factor(const char *unit, double gravity, double *newtons)
 {
     for (size_t i = 0; i < WB_COUNT(units); i++) {
-        if (strcmp(units[i].name, unit) != 0)
+        if (!wb_cells_lists(units[i].names, unit))
             continue;
         *newtons = units[i].mass ? units[i].factor * gravity : units[i].factor;
         return true;
@@ -186,28 +174,25 @@ static bool take_sign(struct cursor *cursor, const char *signs)
  */
 static bool take_status(struct cursor *cursor)
 {
-    static const char *const words[] = {"SUI", "SD", "SI", "SU", "ST", "US",
-                                        "GS",  "NT", "S",  "G",  "N"};
+    char word[4];
     const size_t n = strspn(cursor->at, "ABCDEFGHIJKLMNOPQRSTUVWXYZ");
     const char after = cursor->at[n];
-    if (n == 0 || !(isspace((unsigned char)after) || after == ','))
+    if (n >= sizeof word || !(isspace((unsigned char)after) || after == ','))
         return false;
-    for (size_t i = 0; i < WB_COUNT(words); i++) {
-        if (strlen(words[i]) != n || strncmp(words[i], cursor->at, n) != 0)
-            continue;
-        if (strcmp(words[i], "US") == 0 || strcmp(words[i], "SD") == 0)
-            cursor->reading->unstable = true;
-        /* Replies to S, SI, SU and SUI: MT-SICS, Radwag. */
-        const bool answers = strcmp(words[i], "S") == 0 || strcmp(words[i], "SI") == 0 ||
-                             strcmp(words[i], "SU") == 0 || strcmp(words[i], "SUI") == 0;
-        cursor->at += n;
-        while (isspace((unsigned char)*cursor->at) || *cursor->at == ',')
-            cursor->at++;
-        if (answers)
-            take_sign(cursor, "SD?^v");
-        return true;
-    }
-    return false;
+    memcpy(word, cursor->at, n);
+    word[n] = '\0';
+    /* Replies to S, SI, SU and SUI: MT-SICS, Radwag. */
+    const bool answers = wb_cells_lists("S SI SU SUI", word);
+    if (!answers && !wb_cells_lists("SD ST US GS NT G N", word))
+        return false;
+    if (wb_cells_lists("US SD", word))
+        cursor->reading->unstable = true;
+    cursor->at += n;
+    while (isspace((unsigned char)*cursor->at) || *cursor->at == ',')
+        cursor->at++;
+    if (answers)
+        take_sign(cursor, "SD?^v");
+    return true;
 }
 
 /* Reads a label before the number: letters, blanks and underscores up to a comma, colon or equals
@@ -300,20 +285,14 @@ static bool is_known_unit(const char *word)
 static bool take_mark(struct wb_line_reading *reading, const char *mark)
 {
     const char *rest = mark;
-    if (strcmp(mark, "?") == 0) {
-        reading->unstable = true;
-        return true;
-    }
     if (strchr("LGH", *rest) && rest[1])
         rest++;
-    if (strcmp(rest, "S") == 0)
-        return true;
-    if (strcmp(rest, "U") == 0)
+    if (strcmp(mark, "?") == 0 || strcmp(rest, "U") == 0)
         reading->unstable = true;
     else if (strcmp(rest, "E") == 0)
         reading->kind = WB_LINE_OVERLOAD;
     else
-        return false;
+        return strcmp(rest, "S") == 0;
     return true;
 }
 
@@ -321,25 +300,21 @@ static bool take_mark(struct wb_line_reading *reading, const char *mark)
 static bool take_word(struct cursor *cursor, const char *word, size_t n)
 {
     struct wb_line_reading *const reading = cursor->reading;
-    char head[sizeof reading->unit];
+    char head[sizeof reading->unit], tail[sizeof head];
     if (n >= sizeof head)
         return false;
     if (!reading->unit[0]) {
         /* Find the longest beginning that is a unit and leaves a mark: `GLS` is G and LS. */
         for (size_t k = n; k > 0; k--) {
-            memcpy(head, word, k);
-            head[k] = '\0';
-            char tail[sizeof head];
-            memcpy(tail, word + k, n - k);
-            tail[n - k] = '\0';
+            snprintf(head, sizeof head, "%.*s", (int)k, word);
+            snprintf(tail, sizeof tail, "%.*s", (int)(n - k), word + k);
             if (is_known_unit(head) && (k == n || take_mark(reading, tail))) {
                 strcpy(reading->unit, head);
                 return true;
             }
         }
     }
-    memcpy(head, word, n);
-    head[n] = '\0';
+    snprintf(head, sizeof head, "%.*s", (int)n, word);
     if (take_mark(reading, head))
         return true;
     if (reading->unit[0])
