@@ -9,6 +9,11 @@
 
 #define MS WB_NS_PER_MS
 
+/* Common to the instruments of Loadstar. */
+#define LOADSTAR                                                                                   \
+    .line = "9600,8n1", .unit_rule = WB_UNIT_OF_RIG_FILE, .unit = "lb", .start = "O0W0\r",         \
+    .stop = "\r", .request = "O0W1\r", .tare = "CT0\r", .answers = {{"A", NULL}}
+
 /* Sources: the manufacturers' manuals, and the sketches of the named libraries. Commands that wait
  * for a stable load (`S` of most balances) are not used: during bending the load is never stable.
  */
@@ -16,36 +21,18 @@ static const struct wb_loadcell_preset presets[] = {
     {
         .name = "loadstar",
         .summary = "Loadstar DI-100, DI-1000: decimal pounds",
-        .line = "9600,8n1",
-        .terminator = "any",
-        .unit_rule = WB_UNIT_OF_RIG_FILE,
-        .unit = "lb",
-        .start = "O0W0\r",
-        .stop = "\r",
-        .request = "O0W1\r",
-        .tare = "CT0\r",
-        .answers = {{"A", NULL}},
+        LOADSTAR,
     },
     {
         .name = "loadstar-iload",
         .summary = "Loadstar iLoad, DQ-1000: thousandths of a pound",
-        .line = "9600,8n1",
-        .terminator = "any",
-        .unit_rule = WB_UNIT_OF_RIG_FILE,
-        .unit = "lb",
         .scale = 1e-3,
-        .start = "O0W0\r",
-        .stop = "\r",
-        .request = "O0W1\r",
-        .tare = "CT0\r",
-        .answers = {{"A", NULL}},
+        LOADSTAR,
     },
     {
         .name = "mark-10",
         .summary = "Mark-10 force gauges; tension is negative",
         .line = "115200,8n1",
-        .terminator = "any",
-        .unit_rule = WB_UNIT_PRINTED,
         .sign = -1,
         .request = "?C\r",
         .period_ns = 50 * MS,
@@ -63,23 +50,16 @@ static const struct wb_loadcell_preset presets[] = {
         .name = "kern",
         .summary = "KERN balances, print format of 14 or 15 characters",
         .line = "1200,8n2",
-        .terminator = "any",
-        .unit_rule = WB_UNIT_PRINTED,
         .start = "O1\r\n",
         .stop = "O0\r\n",
         .request = "O8\r\n",
         .tare = "T \r\n",
-        .answers =
-            {
-                {"A00", NULL},
-                {"E01", "the balance rejected a command (E01)"},
-            },
+        .answers = {{"A00", NULL}, {"E01", "the balance rejected a command (E01)"}},
     },
     {
         .name = "kern-asked",
         .summary = "KERN balances (PCB, FKB and others) polled with the letter w",
         .line = "9600,8n1",
-        .terminator = "any",
         .unit_rule = WB_UNIT_IF_STABLE,
         .request = "w",
         .period_ns = 200 * MS,
@@ -90,7 +70,6 @@ static const struct wb_loadcell_preset presets[] = {
         .name = "hx711-adc",
         .summary = "Arduino with HX711, sketches of the library HX711_ADC",
         .line = "57600,8n1",
-        .terminator = "any",
         .unit_rule = WB_UNIT_OF_RIG_FILE,
         .tare = "t",
         .settle_ns = 2500 * MS,
@@ -99,7 +78,6 @@ static const struct wb_loadcell_preset presets[] = {
         .name = "hx711-bogde",
         .summary = "Arduino with HX711, sketches of bogde's library HX711",
         .line = "38400,8n1",
-        .terminator = "any",
         .unit_rule = WB_UNIT_OF_RIG_FILE,
         .delimiter = '|',
         .column = 1,
@@ -109,8 +87,6 @@ static const struct wb_loadcell_preset presets[] = {
         .name = "hx711-sparkfun",
         .summary = "Arduino with HX711, sketches of SparkFun",
         .line = "9600,8n1",
-        .terminator = "any",
-        .unit_rule = WB_UNIT_PRINTED,
         .settle_ns = 2500 * MS,
     },
     {
@@ -118,7 +94,6 @@ static const struct wb_loadcell_preset presets[] = {
         .summary = "A&D balances, A&D standard format",
         .line = "2400,7e1",
         .terminator = "crlf",
-        .unit_rule = WB_UNIT_PRINTED,
         .start = "SIR\r\n",
         .stop = "C\r\n",
         .request = "Q\r\n",
@@ -138,8 +113,6 @@ static const struct wb_loadcell_preset presets[] = {
         .name = "ohaus",
         .summary = "Ohaus balances, Ohaus commands",
         .line = "9600,8n1",
-        .terminator = "any",
-        .unit_rule = WB_UNIT_PRINTED,
         .start = "CP\r\n",
         .stop = "0P\r\n",
         .request = "IP\r\n",
@@ -156,8 +129,6 @@ static const struct wb_loadcell_preset presets[] = {
         .name = "ohaus-scout",
         .summary = "Ohaus Scout Pro and Traveler",
         .line = "2400,8n1",
-        .terminator = "any",
-        .unit_rule = WB_UNIT_PRINTED,
         .start = "CA\r\n",
         .stop = "0A\r\n",
         .request = "P\r\n",
@@ -185,7 +156,6 @@ static const struct wb_loadcell_preset presets[] = {
         .summary = "Radwag balances and indicators",
         .line = "9600,8n1",
         .terminator = "crlf",
-        .unit_rule = WB_UNIT_PRINTED,
         .start = "C1\r\n",
         .stop = "C0\r\n",
         .request = "SI\r\n",
@@ -203,15 +173,12 @@ static const struct wb_loadcell_preset presets[] = {
         .name = "indicator",
         .summary = "weighing indicators that print `ST,GS,+  4.876kg` by themselves",
         .line = "9600,8n1",
-        .terminator = "any",
-        .unit_rule = WB_UNIT_PRINTED,
     },
     {
         .name = "dini-argeo",
         .summary = "Dini Argeo indicators, polled",
         .line = "9600,8n1",
         .terminator = "crlf",
-        .unit_rule = WB_UNIT_PRINTED,
         .request = "READ\r\n",
         .period_ns = 100 * MS,
         .tare = "TARE\r\n",
@@ -258,7 +225,8 @@ void wb_loadcell_preset_apply(const struct wb_loadcell_preset *preset,
                               struct wb_rig_load_cell *cell)
 {
     set_text(cell->preset, sizeof cell->preset, preset->name);
-    set_text(cell->terminator, sizeof cell->terminator, preset->terminator);
+    set_text(cell->terminator, sizeof cell->terminator,
+             preset->terminator ? preset->terminator : "any");
     set_text(cell->unit, sizeof cell->unit, preset->unit);
     cell->scale = preset->scale != 0.0 ? preset->scale : 1.0;
     cell->sign = preset->sign != 0 ? preset->sign : 1;
@@ -309,14 +277,11 @@ static const struct wb_loadcell_answer *find_answer(const struct wb_loadcell_pre
 {
     while (length > 0 && isspace((unsigned char)bytes[length - 1]))
         length--;
-    while (length > 0 && isspace((unsigned char)*bytes)) {
+    for (; length > 0 && isspace((unsigned char)*bytes); length--)
         bytes++;
-        length--;
-    }
-    for (size_t i = 0; i < WB_PRESET_ANSWERS && preset->answers[i].text; i++)
-        if (strlen(preset->answers[i].text) == length &&
-            memcmp(preset->answers[i].text, bytes, length) == 0)
-            return &preset->answers[i];
+    for (const struct wb_loadcell_answer *at = preset->answers; at->text; at++)
+        if (strlen(at->text) == length && memcmp(at->text, bytes, length) == 0)
+            return at;
     return NULL;
 }
 

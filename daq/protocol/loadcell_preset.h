@@ -32,10 +32,10 @@ struct wb_loadcell_answer {
 
 #define WB_PRESET_ANSWERS 8
 struct wb_loadcell_preset {
-    const char *name;    /* in rig files */
-    const char *summary; /* manufacturer and instrument */
-    const char *line;    /* "9600,8n1", default of the address; NULL: the address must give it */
-    const char *terminator;
+    const char *name;       /* in rig files */
+    const char *summary;    /* manufacturer and instrument */
+    const char *line;       /* "9600,8n1", default of the address; NULL: the address must give it */
+    const char *terminator; /* NULL: "any" */
     enum wb_unit_rule unit_rule;
     const char *unit; /* of lines without a unit; NULL: the rig file must give it */
     double scale;     /* 0 means 1 */
