@@ -4,11 +4,16 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "daq/protocol/cells.h"
 #include "daq/protocol/grbl.h"
 #include "daq/protocol/loadcell_line.h"
 
 #define TEXT_SHARE 0.85  /* least fraction of printable bytes in text */
 #define ENDLESS_BYTES 80 /* text of this length without a line end is not a line */
+
+#define SWAPPED "load_cell.address and stage.address are probably swapped: exchange them"
+#define NOT_LINES                                                                                  \
+    "its bytes are not lines of text: set the baud rate in stage.address (GRBL 1.1: 115200)"
 
 void wb_diagnosis_add(struct wb_diagnosis *diagnosis, const void *bytes, size_t n)
 {
@@ -28,75 +33,82 @@ static bool is_text(const struct wb_diagnosis *diagnosis)
     return (double)printable >= TEXT_SHARE * (double)diagnosis->n;
 }
 
-static bool begins(const char *line, size_t n, const char *word)
+static bool has(struct wb_span line, const char *word)
 {
-    return n >= strlen(word) && strncasecmp(line, word, strlen(word)) == 0;
-}
-
-static bool has(const char *line, size_t n, const char *word)
-{
-    for (size_t i = 0; i < n; i++)
-        if (begins(line + i, n - i, word))
+    for (; line.n > 0; line.text++, line.n--)
+        if (wb_cells_begins(line, word))
             return true;
     return false;
 }
 
+/* The next line from `at` that is not empty; false: no further line has ended. */
+static bool next_line(const struct wb_diagnosis *diagnosis, size_t *at, struct wb_span *line)
+{
+    *line = (struct wb_span){diagnosis->bytes + *at, 0};
+    while (*at < diagnosis->n) {
+        const char c = diagnosis->bytes[(*at)++];
+        if (c != '\n' && c != '\r')
+            line->n++;
+        else if (line->n > 0)
+            return true;
+        else
+            line->text = diagnosis->bytes + *at;
+    }
+    return false;
+}
+
+static bool is_grbl(enum wb_diagnosis_kind kind)
+{
+    return kind == WB_DIAGNOSIS_GRBL || kind == WB_DIAGNOSIS_OLD_GRBL;
+}
+
 /* Kind of a line of text; OTHER if it is not recognised. */
-static enum wb_diagnosis_kind judge_line(const char *line, size_t n)
+static enum wb_diagnosis_kind judge_line(struct wb_span line)
 {
     static const struct wb_rig_load_cell plain = {.scale = 1.0, .sign = 1};
     struct wb_grbl_line grbl;
     struct wb_line_reading reading;
     /* "<Idle,MPos:0.000,...": reports of version 0.9 have commas, those of 1.1 have bars. */
-    if (begins(line, n, "Grbl 0.") || (begins(line, n, "<") && has(line, n, ",MPos:")))
+    if (wb_cells_begins(line, "Grbl 0.") || (wb_cells_begins(line, "<") && has(line, ",MPos:")))
         return WB_DIAGNOSIS_OLD_GRBL;
-    if (has(line, n, "Marlin") || begins(line, n, "echo:") || begins(line, n, "Error:Printer"))
+    if (has(line, "Marlin") || wb_cells_begins(line, "echo:") ||
+        wb_cells_begins(line, "Error:Printer"))
         return WB_DIAGNOSIS_MARLIN;
-    wb_grbl_decode(line, n, &grbl);
+    wb_grbl_decode(line.text, line.n, &grbl);
     if (grbl.kind == WB_GRBL_LINE_BANNER || grbl.kind == WB_GRBL_LINE_REPORT ||
         grbl.kind == WB_GRBL_LINE_ALARM)
         return WB_DIAGNOSIS_GRBL;
-    wb_line_decode(line, n, &plain, &reading);
+    wb_line_decode(line.text, line.n, &plain, &reading);
     return reading.kind == WB_LINE_VALUE ? WB_DIAGNOSIS_READINGS : WB_DIAGNOSIS_OTHER;
 }
 
 enum wb_diagnosis_kind wb_diagnosis_kind(const struct wb_diagnosis *diagnosis)
 {
-    int readings = 0, others = 0;
-    size_t begin = 0, lines = 0;
+    int readings = 0, lines = 0;
+    struct wb_span line;
     if (diagnosis->n == 0)
         return WB_DIAGNOSIS_NOTHING;
     if (!is_text(diagnosis))
         return WB_DIAGNOSIS_NOISE;
-    for (size_t i = 0; i < diagnosis->n; i++) {
-        if (diagnosis->bytes[i] != '\n' && diagnosis->bytes[i] != '\r')
-            continue;
-        const enum wb_diagnosis_kind kind = judge_line(diagnosis->bytes + begin, i - begin);
-        if (kind == WB_DIAGNOSIS_GRBL || kind == WB_DIAGNOSIS_OLD_GRBL ||
-            kind == WB_DIAGNOSIS_MARLIN)
+    for (size_t at = 0; next_line(diagnosis, &at, &line); lines++) {
+        const enum wb_diagnosis_kind kind = judge_line(line);
+        if (is_grbl(kind) || kind == WB_DIAGNOSIS_MARLIN)
             return kind;
         /* The first line may be incomplete. */
-        if (i > begin && lines > 0) {
-            readings += kind == WB_DIAGNOSIS_READINGS;
-            others += kind != WB_DIAGNOSIS_READINGS;
-        }
-        lines += i > begin;
-        begin = i + 1;
+        readings += lines > 0 && kind == WB_DIAGNOSIS_READINGS;
     }
     if (lines == 0 && diagnosis->n >= ENDLESS_BYTES)
         return WB_DIAGNOSIS_ENDLESS;
+    const int others = lines - 1 - readings;
     return readings >= 2 && readings > others ? WB_DIAGNOSIS_READINGS : WB_DIAGNOSIS_OTHER;
 }
-
-static const char *const swapped =
-    "load_cell.address and stage.address are probably swapped: exchange them";
 
 /* Whether the bytes contain line ends, but not those of the rig file. */
 static bool lacks_terminator(const struct wb_diagnosis *load, const struct wb_rig *rig)
 {
     const char *const terminator = rig->load_cell.terminator;
     if (strcmp(terminator, "crlf") == 0)
-        return !has(load->bytes, load->n, "\r\n");
+        return !has((struct wb_span){load->bytes, load->n}, "\r\n");
     if (strcmp(terminator, "cr") == 0)
         return !memchr(load->bytes, '\r', load->n);
     return strcmp(terminator, "lf") == 0 && !memchr(load->bytes, '\n', load->n);
@@ -107,18 +119,13 @@ static bool is_bare_number(const struct wb_diagnosis *load, const struct wb_rig 
                            double *number)
 {
     struct wb_line_reading reading;
-    size_t begin = 0;
-    for (size_t i = 0, lines = 0; i < load->n; i++) {
-        if (load->bytes[i] != '\n' && load->bytes[i] != '\r')
-            continue;
-        if (i > begin && ++lines == 2) {
-            wb_line_decode(load->bytes + begin, i - begin, &rig->load_cell, &reading);
-            *number = reading.value;
-            return reading.kind == WB_LINE_VALUE && reading.unit[0] == '\0';
-        }
-        begin = i + 1;
-    }
-    return false;
+    struct wb_span line;
+    size_t at = 0;
+    if (!next_line(load, &at, &line) || !next_line(load, &at, &line))
+        return false;
+    wb_line_decode(line.text, line.n, &rig->load_cell, &reading);
+    *number = reading.value;
+    return reading.kind == WB_LINE_VALUE && reading.unit[0] == '\0';
 }
 
 /* Diagnoses numbers without a unit. */
@@ -143,12 +150,11 @@ void wb_diagnosis_load(const struct wb_diagnosis *load, const struct wb_diagnosi
                        const struct wb_rig *rig, char text[WB_DIAGNOSIS_TEXT])
 {
     const enum wb_diagnosis_kind kind = wb_diagnosis_kind(load);
-    const bool is_grbl = kind == WB_DIAGNOSIS_GRBL || kind == WB_DIAGNOSIS_OLD_GRBL;
     double number;
-    if (is_grbl || wb_diagnosis_kind(stage) == WB_DIAGNOSIS_READINGS)
-        snprintf(text, WB_DIAGNOSIS_TEXT, "%s: %s",
-                 is_grbl ? "a stage replies at this port" : "a load cell sends at the stage's port",
-                 swapped);
+    if (is_grbl(kind))
+        snprintf(text, WB_DIAGNOSIS_TEXT, "a stage replies at this port: " SWAPPED);
+    else if (wb_diagnosis_kind(stage) == WB_DIAGNOSIS_READINGS)
+        snprintf(text, WB_DIAGNOSIS_TEXT, "a load cell sends at the stage's port: " SWAPPED);
     else if (kind == WB_DIAGNOSIS_NOTHING)
         snprintf(
             text, WB_DIAGNOSIS_TEXT,
@@ -170,9 +176,35 @@ void wb_diagnosis_load(const struct wb_diagnosis *load, const struct wb_diagnosi
                  "and its unit");
 }
 
-static void diagnose_tic(enum wb_diagnosis_kind kind, char text[WB_DIAGNOSIS_TEXT])
+/* Cause and remedy for a GRBL stage that does not report its status. */
+static const char *const grbl_causes[] = {
+    [WB_DIAGNOSIS_NOTHING] =
+        "no data received: check power and cable, the port and the baud rate in stage.address "
+        "(GRBL 1.1: 115200), and stage.protocol",
+    [WB_DIAGNOSIS_NOISE] = NOT_LINES,
+    [WB_DIAGNOSIS_ENDLESS] = NOT_LINES,
+    [WB_DIAGNOSIS_GRBL] =
+        "it is a GRBL 1.1 that does not reply to '?': check both directions of the cable, and "
+        "flow= in stage.address",
+    [WB_DIAGNOSIS_OLD_GRBL] =
+        "it is a GRBL before 1.1, which cannot jog: install GRBL 1.1 on the controller "
+        "(stage.protocol grbl)",
+    [WB_DIAGNOSIS_MARLIN] =
+        "it replies like Marlin, the firmware of 3D printers: stage.protocol grbl needs GRBL 1.1 "
+        "on the controller",
+    [WB_DIAGNOSIS_READINGS] = "it sends readings of a load cell: " SWAPPED,
+    [WB_DIAGNOSIS_OTHER] =
+        "its lines are not those of GRBL 1.1: check that stage.address is the stage's port, and "
+        "stage.protocol",
+};
+
+void wb_diagnosis_stage(const struct wb_diagnosis *stage, const struct wb_rig *rig,
+                        char text[WB_DIAGNOSIS_TEXT])
 {
-    if (kind == WB_DIAGNOSIS_GRBL || kind == WB_DIAGNOSIS_OLD_GRBL)
+    const enum wb_diagnosis_kind kind = wb_diagnosis_kind(stage);
+    if (strcmp(rig->stage.protocol, "tic") != 0 || kind == WB_DIAGNOSIS_READINGS)
+        snprintf(text, WB_DIAGNOSIS_TEXT, "%s", grbl_causes[kind]);
+    else if (is_grbl(kind))
         snprintf(text, WB_DIAGNOSIS_TEXT,
                  "it is a GRBL, not a Tic: set stage.protocol: grbl, and stage.axis");
     else
@@ -182,53 +214,4 @@ static void diagnose_tic(enum wb_diagnosis_kind kind, char text[WB_DIAGNOSIS_TEX
                  "Serial / I2C / USB and CRC and 7-bit responses are off",
                  kind == WB_DIAGNOSIS_NOTHING ? "no data received"
                                               : "the received bytes are not a reply of a Tic");
-}
-
-void wb_diagnosis_stage(const struct wb_diagnosis *stage, const struct wb_rig *rig,
-                        char text[WB_DIAGNOSIS_TEXT])
-{
-    const enum wb_diagnosis_kind kind = wb_diagnosis_kind(stage);
-    if (strcmp(rig->stage.protocol, "tic") == 0 && kind != WB_DIAGNOSIS_READINGS) {
-        diagnose_tic(kind, text);
-        return;
-    }
-    switch (kind) {
-    case WB_DIAGNOSIS_NOTHING:
-        snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "no data received: check power and cable, the port and the baud rate in "
-                 "stage.address (GRBL 1.1: 115200), and stage.protocol");
-        break;
-    case WB_DIAGNOSIS_NOISE:
-    case WB_DIAGNOSIS_ENDLESS:
-        snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "its bytes are not lines of text: set the baud rate in stage.address (GRBL 1.1: "
-                 "115200)");
-        break;
-    case WB_DIAGNOSIS_OLD_GRBL:
-        snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "it is a GRBL before 1.1, which cannot jog: install GRBL 1.1 on the controller "
-                 "(stage.protocol %s)",
-                 rig->stage.protocol);
-        break;
-    case WB_DIAGNOSIS_MARLIN:
-        snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "it replies like Marlin, the firmware of 3D printers: stage.protocol %s needs "
-                 "GRBL 1.1 on the controller",
-                 rig->stage.protocol);
-        break;
-    case WB_DIAGNOSIS_READINGS:
-        snprintf(text, WB_DIAGNOSIS_TEXT, "it sends readings of a load cell: %s", swapped);
-        break;
-    case WB_DIAGNOSIS_GRBL:
-        snprintf(text, WB_DIAGNOSIS_TEXT,
-                 "it is a GRBL 1.1 that does not reply to '?': check both directions of the cable, "
-                 "and flow= in stage.address");
-        break;
-    case WB_DIAGNOSIS_OTHER:
-        snprintf(
-            text, WB_DIAGNOSIS_TEXT,
-            "its lines are not those of GRBL 1.1: check that stage.address is the stage's port, "
-            "and stage.protocol");
-        break;
-    }
 }
