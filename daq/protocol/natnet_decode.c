@@ -38,6 +38,13 @@ static const uint8_t *take(struct reader *reader, size_t n)
     return bytes;
 }
 
+static void get_bytes(struct reader *reader, void *to, size_t n)
+{
+    const uint8_t *const bytes = take(reader, n);
+    if (bytes)
+        memcpy(to, bytes, n);
+}
+
 static uint16_t get_u16(struct reader *reader)
 {
     const uint8_t *const b = take(reader, 2);
@@ -46,10 +53,7 @@ static uint16_t get_u16(struct reader *reader)
 
 static int16_t get_i16(struct reader *reader)
 {
-    const uint16_t bits = get_u16(reader);
-    int16_t value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
+    return (int16_t)get_u16(reader);
 }
 
 static uint32_t get_u32(struct reader *reader)
@@ -61,10 +65,7 @@ static uint32_t get_u32(struct reader *reader)
 
 static int32_t get_i32(struct reader *reader)
 {
-    const uint32_t bits = get_u32(reader);
-    int32_t value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
+    return (int32_t)get_u32(reader);
 }
 
 static uint64_t get_u64(struct reader *reader)
@@ -121,18 +122,16 @@ bool wb_natnet_version_at_least(struct wb_natnet_version version, int major, int
  * reader's window ends at its end. */
 struct section {
     int count;
-    bool sized;
-    size_t start, end, outer; /* outer: end of the window before */
+    size_t end;   /* 0: without size */
+    size_t outer; /* end of the window before */
 };
 
 /* Opens a section whose items take at least `minimum` bytes. */
 static struct section open_section(struct reader *reader, size_t minimum)
 {
-    struct section section = {.sized = at_least(reader, 4, 1), .outer = reader->n};
-    if (!section.sized) {
+    struct section section = {.outer = reader->n};
+    if (!at_least(reader, 4, 1)) {
         section.count = get_count(reader, minimum);
-        section.start = reader->at;
-        section.end = reader->n;
         return section;
     }
     const int32_t count = get_i32(reader);
@@ -141,11 +140,9 @@ static struct section open_section(struct reader *reader, size_t minimum)
         reject(reader, "a section's size is larger than the datagram");
     else if (!reader->reason && (count < 0 || (size_t)count > (size_t)size / minimum))
         reject(reader, "a section's count is larger than its size");
-    section.start = section.end = reader->at;
     if (!reader->reason) {
         section.count = count;
-        section.end += (size_t)size;
-        reader->n = section.end;
+        section.end = reader->n = reader->at + (size_t)size;
     }
     return section;
 }
@@ -154,7 +151,7 @@ static struct section open_section(struct reader *reader, size_t minimum)
 static void close_section(struct reader *reader, const struct section *section)
 {
     reader->n = section->outer;
-    if (section->sized && reader->at != section->end)
+    if (section->end && reader->at != section->end)
         reject(reader, "a section's size differs from its content");
 }
 
@@ -425,20 +422,16 @@ enum wb_status wb_natnet_decode_server(const struct wb_natnet_packet *packet,
     struct reader reader = reader_of(packet);
     struct wb_natnet_server read;
     memset(&read, 0, sizeof read);
-    const uint8_t *const name = take(&reader, sizeof read.name);
-    const uint8_t *const app_version = take(&reader, 4);
-    const uint8_t *const natnet_version = take(&reader, 4);
-    if (name && app_version && natnet_version) {
-        memcpy(read.name, name, sizeof read.name - 1);
-        memcpy(read.app_version, app_version, 4);
-        memcpy(read.natnet_version, natnet_version, 4);
-    }
+    get_bytes(&reader, read.name, sizeof read.name);
+    read.name[sizeof read.name - 1] = '\0';
+    get_bytes(&reader, read.app_version, 4);
+    get_bytes(&reader, read.natnet_version, 4);
     if (remaining(&reader) >= 15) {
         read.has_connection = true;
         read.clock_frequency = get_u64(&reader);
         read.data_port = get_u16(&reader);
         read.multicast = *take(&reader, 1) != 0;
-        memcpy(read.group, take(&reader, 4), 4);
+        get_bytes(&reader, read.group, 4);
     }
     const enum wb_status status = finish(&reader, fault);
     if (status == WB_OK)
@@ -454,13 +447,8 @@ enum wb_status wb_natnet_decode_frame(const struct wb_natnet_packet *packet,
     reader.version = version;
     /* Only counts and scalars are set to zero: clearing the arrays would take longer than decoding.
      */
-    frame->mocap.t_ns = 0;
+    memset(&frame->mocap, 0, offsetof(struct wb_mocap_frame, markers));
     frame->mocap.t_clock = (double)NAN;
-    frame->mocap.camera_mid_exposure = 0;
-    frame->mocap.camera_data_received = 0;
-    frame->mocap.transmit = 0;
-    frame->mocap.params = 0;
-    frame->mocap.n_markers = 0;
     frame->n_labelled = frame->n_points = frame->n_bodies_kept = 0;
     frame->n_sets = frame->n_others = frame->n_bodies = 0;
     frame->n_skeletons = frame->n_assets = frame->n_force_plates = frame->n_devices = 0;

@@ -53,10 +53,7 @@ static uint32_t read_32(const uint8_t *bytes)
 
 static int32_t read_signed(const uint8_t *bytes)
 {
-    const uint32_t raw = read_32(bytes);
-    int32_t value;
-    memcpy(&value, &raw, sizeof value);
-    return value;
+    return (int32_t)read_32(bytes);
 }
 
 bool wb_tic_decode_status(const uint8_t bytes[WB_TIC_STATUS_BYTES], struct wb_tic_status *status)
@@ -163,20 +160,14 @@ int wb_tic_alarm(uint16_t errors)
 
 const char *wb_tic_alarm_text(int alarm)
 {
-    switch (alarm - WB_TIC_ALARM) {
-    case 1:
-        return "motor driver error: the driver is too hot or the motor is short-circuited";
-    case 2:
-        return "low VIN: the motor supply is off or its voltage too low";
-    case 3:
-        return "the kill switch is active";
-    case 4:
-        return "a required input is invalid: set the control mode to Serial / I2C / USB";
-    case 5:
-        return "serial error: the Tic received damaged bytes";
-    case 8:
-        return "its ERR line is held high by another device";
-    default:
-        return "unknown error";
-    }
+    static const char *const texts[16] = {
+        [1] = "motor driver error: the driver is too hot or the motor is short-circuited",
+        [2] = "low VIN: the motor supply is off or its voltage too low",
+        [3] = "the kill switch is active",
+        [4] = "a required input is invalid: set the control mode to Serial / I2C / USB",
+        [5] = "serial error: the Tic received damaged bytes",
+        [8] = "its ERR line is held high by another device",
+    };
+    const int bit = alarm - WB_TIC_ALARM;
+    return bit >= 0 && bit < 16 && texts[bit] ? texts[bit] : "unknown error";
 }
