@@ -45,6 +45,16 @@ void wb_driver_remark(const struct wb_sink *sink, enum wb_log_level level, int64
     sink->remark(sink->context, level, t_ns, kind, text);
 }
 
+char *wb_driver_printable(char *text, size_t size, const void *bytes, size_t n)
+{
+    const char *const from = bytes;
+    const size_t kept = n < size ? n : size - 1;
+    for (size_t i = 0; i < kept; i++)
+        text[i] = from[i] >= 0x20 && from[i] < 0x7f ? from[i] : '?';
+    text[kept] = '\0';
+    return text;
+}
+
 bool wb_driver_is_report_due(uint64_t n)
 {
     while (n > 3 && n % 10 == 0)

@@ -86,6 +86,10 @@ void wb_driver_remark(const struct wb_sink *sink, enum wb_log_level level, int64
                       const char *kind, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
+/* Copies n bytes as text for a message: other than printable ASCII becomes '?', so that a message
+ * has no control sequences. Text that does not fit is cut. Returns `text`. */
+char *wb_driver_printable(char *text, size_t size, const void *bytes, size_t n);
+
 /* True for the 1st, 2nd, 3rd, 10th, 20th, 30th, 100th, ... occurrence: repeated remarks are
  * reported less and less often. */
 bool wb_driver_is_report_due(uint64_t n);

@@ -7,6 +7,7 @@
 
 #include "base/config.h"
 #include "base/number.h"
+#include "daq/protocol/driver.h"
 
 #define MM_PER_M 1e3
 #define S_PER_MIN 60.0
@@ -157,13 +158,9 @@ void wb_grbl_decode(const char *bytes, size_t length, struct wb_grbl_line *line)
     line->value = (double)NAN;
     while (length > 0 && (bytes[length - 1] == '\r' || bytes[length - 1] == ' '))
         length--;
-    const size_t kept = length < sizeof text - 1 ? length : sizeof text - 1;
-    for (size_t i = 0; i < kept; i++)
-        text[i] = bytes[i] >= 0x20 && bytes[i] < 0x7f ? bytes[i] : '?';
-    text[kept] = '\0';
-    const size_t shown = kept < sizeof line->text - 1 ? kept : sizeof line->text - 1;
-    memcpy(line->text, text, shown);
-    if (kept == length)
+    wb_driver_printable(line->text, sizeof line->text, bytes, length);
+    wb_driver_printable(text, sizeof text, bytes, length);
+    if (length < sizeof text)
         classify(text, line);
 }
 

@@ -43,25 +43,17 @@ void wb_loadcell_keep_streaming(struct wb_loadcell *loadcell, int64_t now_ns, co
     loadcell->next_ask_ns = now_ns + WB_LOADCELL_SILENCE_NS;
 }
 
-char *wb_loadcell_printable(const struct wb_line_buffer *line, char *text, size_t size)
-{
-    size_t n = 0;
-    for (; n < line->n && n + 1 < size; n++)
-        text[n] = line->bytes[n] >= 0x20 && line->bytes[n] < 0x7f ? line->bytes[n] : '?';
-    text[n] = '\0';
-    return text;
-}
-
 static void reject_line(struct wb_loadcell *loadcell, int64_t t_ns, const char *reason,
                         const struct wb_sink *sink)
 {
     char text[64];
     loadcell->n_refused++;
     if (wb_driver_is_report_due(loadcell->n_refused))
-        wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "refused",
-                         "a line of the load cell cannot be decoded: '%s': %s; %" PRIu64 " so far",
-                         wb_loadcell_printable(&loadcell->line, text, sizeof text), reason,
-                         loadcell->n_refused);
+        wb_driver_remark(
+            sink, WB_LOG_WARNING, t_ns, "refused",
+            "a line of the load cell cannot be decoded: '%s': %s; %" PRIu64 " so far",
+            wb_driver_printable(text, sizeof text, loadcell->line.bytes, loadcell->line.n), reason,
+            loadcell->n_refused);
 }
 
 /* Tracks the unit; true if the line's unit differs from the first one. A line without a unit is
@@ -113,9 +105,9 @@ static void deliver_overload(struct wb_loadcell *loadcell, struct wb_load_sample
     sample->overload = true;
     loadcell->n_overloads++;
     if (!loadcell->overloaded)
-        wb_driver_remark(sink, WB_LOG_ERROR, sample->t_ns, "overload",
-                         "the load cell is out of range: '%s'",
-                         wb_loadcell_printable(&loadcell->line, text, sizeof text));
+        wb_driver_remark(
+            sink, WB_LOG_ERROR, sample->t_ns, "overload", "the load cell is out of range: '%s'",
+            wb_driver_printable(text, sizeof text, loadcell->line.bytes, loadcell->line.n));
     loadcell->overloaded = true;
     pass_on(loadcell, sample, sink);
 }

@@ -50,7 +50,4 @@ void wb_loadcell_keep_streaming(struct wb_loadcell *loadcell, int64_t now_ns, co
 void wb_loadcell_deliver(struct wb_loadcell *loadcell, int64_t t_ns,
                          const struct wb_line_reading *reading, const struct wb_sink *sink);
 
-/* Writes a printable copy of a line, truncated to `size`. Returns `text`. */
-char *wb_loadcell_printable(const struct wb_line_buffer *line, char *text, size_t size);
-
 #endif

@@ -58,7 +58,7 @@ static void end_line(struct generic_state *state, int64_t t_ns, const struct wb_
         if (line->n > 0)
             wb_driver_remark(sink, WB_LOG_INFO, t_ns, "partial",
                              "the first line may be incomplete and is dropped: '%s'",
-                             wb_loadcell_printable(line, text, sizeof text));
+                             wb_driver_printable(text, sizeof text, line->bytes, line->n));
         loadcell->whole = true;
     } else {
         const size_t n = line->overlong ? sizeof line->bytes : line->n;

@@ -71,7 +71,7 @@ static void decode_line(struct wb_loadcell *loadcell, int64_t t_ns, const struct
     char *words[4] = {NULL, NULL, NULL, NULL};
     struct wb_line_reading reading = {.kind = WB_LINE_REFUSED, .value = (double)NAN};
     reading.reason = "not a reply of MT-SICS: check load_cell.protocol";
-    wb_loadcell_printable(line, text, sizeof text);
+    wb_driver_printable(text, sizeof text, line->bytes, line->n);
     /* Replace CR by a blank, before a printable copy would show it as '?'. */
     for (size_t i = 0; i < line->n; i++)
         if (line->bytes[i] == '\r')

@@ -168,12 +168,7 @@ static void remark_version(const struct natnet_state *state, int64_t t_ns,
 {
     const struct wb_natnet_version version = state->version;
     char name[64];
-    size_t n = 0;
-    for (; n + 1 < sizeof name && state->server.name[n]; n++) {
-        const char c = state->server.name[n];
-        name[n] = c >= 0x20 && c < 0x7f ? c : '?';
-    }
-    name[n] = '\0';
+    wb_driver_printable(name, sizeof name, state->server.name, strlen(state->server.name));
     const uint8_t *const app = state->server.app_version;
     wb_driver_remark(sink, WB_LOG_INFO, t_ns, "connected",
                      "the server is '%s' %u.%u.%u.%u, NatNet %u.%u", name, app[0], app[1], app[2],

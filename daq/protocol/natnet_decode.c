@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "daq/protocol/driver.h"
+
 /* A cursor over the payload. After the first fault all values read are zero, so that a parser only
  * needs to check at the end of each section. */
 struct reader {
@@ -474,15 +476,11 @@ enum wb_status wb_natnet_decode_echo(const struct wb_natnet_packet *packet, uint
     return status;
 }
 
-/* Copies printable ASCII only, so that a remark cannot contain terminal control sequences. */
+/* Copies the text of a message. */
 static void copy_text(const struct wb_natnet_packet *packet, char *text, size_t size)
 {
-    size_t n = 0;
-    while (n < packet->n_payload && n + 1 < size && packet->payload[n] != '\0') {
-        const uint8_t c = packet->payload[n];
-        text[n++] = c >= 0x20 && c < 0x7f ? (char)c : '?';
-    }
-    text[n] = '\0';
+    const char *const from = (const char *)packet->payload;
+    wb_driver_printable(text, size, from, strnlen(from, packet->n_payload));
 }
 
 enum wb_status wb_natnet_decode_text(const struct wb_natnet_packet *packet, char *text, size_t size,
