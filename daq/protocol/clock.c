@@ -25,6 +25,7 @@ int64_t wb_clock_line_host_ns(const struct wb_clock_line *line, double device)
 struct point {
     double x, y;  /* s since the first point, on the clock of the device and of the host */
     double width; /* round trip, s */
+    double weight;
 };
 
 static int compare_doubles(const void *a, const void *b)
@@ -46,21 +47,20 @@ struct fit {
 };
 
 /* Fits a line by weighted least squares; with `fixed` its slope is kept. */
-static void fit_weighted(const struct point *points, const double *weights, size_t n, bool fixed,
-                         struct fit *fit)
+static void fit_weighted(const struct point *points, size_t n, bool fixed, struct fit *fit)
 {
     double sum = 0.0, sum_x = 0.0, sum_y = 0.0, xx = 0.0, xy = 0.0;
     for (size_t i = 0; i < n; i++) {
-        sum += weights[i];
-        sum_x += weights[i] * points[i].x;
-        sum_y += weights[i] * points[i].y;
+        sum += points[i].weight;
+        sum_x += points[i].weight * points[i].x;
+        sum_y += points[i].weight * points[i].y;
     }
     fit->mean_x = sum_x / sum;
     fit->mean_y = sum_y / sum;
     for (size_t i = 0; i < n; i++) {
         const double dx = points[i].x - fit->mean_x;
-        xx += weights[i] * dx * dx;
-        xy += weights[i] * dx * (points[i].y - fit->mean_y);
+        xx += points[i].weight * dx * dx;
+        xy += points[i].weight * dx * (points[i].y - fit->mean_y);
     }
     if (!fixed)
         fit->slope = xy / xx;
@@ -73,34 +73,30 @@ static double residual(const struct fit *fit, const struct point *point)
     return point->y - fit->mean_y - fit->slope * (point->x - fit->mean_x);
 }
 
-/* Huber's weights: 1 for residuals within 1.345 robust standard deviations, decreasing beyond. */
-static void set_weights(const struct fit *fit, const struct point *points, size_t n,
-                        double *weights, double *work)
+/* Huber's weights: 1 for residuals within 1.345 robust standard deviations, decreasing beyond.
+ * `work`: n values of scratch. */
+static void set_weights(const struct fit *fit, struct point *points, size_t n, double *work)
 {
     for (size_t i = 0; i < n; i++)
         work[i] = fabs(residual(fit, &points[i]));
-    const double scale = fmax(1.4826 * median(work, n), 1e-9);
+    const double limit = 1.345 * fmax(1.4826 * median(work, n), 1e-9);
     for (size_t i = 0; i < n; i++) {
-        const double limit = 1.345 * scale, distance = fabs(residual(fit, &points[i]));
-        weights[i] = distance <= limit ? 1.0 : limit / distance;
+        const double distance = fabs(residual(fit, &points[i]));
+        points[i].weight = distance <= limit ? 1.0 : limit / distance;
     }
 }
 
-/* Robust fit; returns the weighted standard deviation. `weights` and `work`: n values of scratch.
- */
-static double fit_robust(const struct point *points, size_t n, bool fixed, struct fit *fit,
-                         double *weights, double *work)
+/* Robust fit to points of weight 1; returns the weighted standard deviation. */
+static double fit_robust(struct point *points, size_t n, bool fixed, struct fit *fit, double *work)
 {
-    for (size_t i = 0; i < n; i++)
-        weights[i] = 1.0;
-    fit_weighted(points, weights, n, fixed, fit);
+    fit_weighted(points, n, fixed, fit);
     for (int iteration = 0; iteration < 20; iteration++) {
-        set_weights(fit, points, n, weights, work);
-        fit_weighted(points, weights, n, fixed, fit);
+        set_weights(fit, points, n, work);
+        fit_weighted(points, n, fixed, fit);
     }
     double sum = 0.0;
     for (size_t i = 0; i < n; i++)
-        sum += weights[i] * residual(fit, &points[i]) * residual(fit, &points[i]);
+        sum += points[i].weight * residual(fit, &points[i]) * residual(fit, &points[i]);
     return sqrt(sum / fit->sum_weight);
 }
 
@@ -135,66 +131,54 @@ static size_t keep_best(struct wb_clock_probe *probes, size_t n)
     return n_kept;
 }
 
-/* Arrays for n probes and the results computed from them. */
-struct probe_fit {
-    struct wb_clock_probe *kept;
-    struct point *points;
-    double *weights, *work;
-};
-
-static void fit_kept(struct wb_clock_line *line, const struct probe_fit *room, size_t n,
-                     double nominal_slope)
+/* `points` and `work`: n values of scratch. */
+static void fit_kept(struct wb_clock_line *line, const struct wb_clock_probe *kept, size_t n,
+                     double nominal_slope, struct point *points, double *work)
 {
-    const struct wb_clock_probe *const kept = room->kept;
-    struct point *const points = room->points;
     const int64_t zero_ns = kept[0].t_sent_ns;
     for (size_t i = 0; i < n; i++) {
         points[i].x = kept[i].t_device - kept[0].t_device;
         points[i].width = wb_seconds_from_ns(round_trip(&kept[i]));
         points[i].y = wb_seconds_from_ns(kept[i].t_sent_ns - zero_ns) + 0.5 * points[i].width;
+        points[i].weight = 1.0;
     }
     const bool fixed =
         n < 3 || wb_seconds_from_ns(kept[n - 1].t_sent_ns - zero_ns) < LEAST_PROBE_SPAN;
     struct fit fit = {.slope = nominal_slope};
-    line->scatter = fit_robust(points, n, fixed, &fit, room->weights, room->work);
+    line->scatter = fit_robust(points, n, fixed, &fit, work);
     for (size_t i = 0; i < n; i++)
-        room->work[i] = points[i].width;
+        work[i] = points[i].width;
     const double own_error = line->scatter / sqrt((double)n);
     line->device_zero = kept[0].t_device + fit.mean_x;
     line->host_zero_ns = zero_ns + wb_ns_from_seconds(fit.mean_y);
     line->slope = fit.slope;
     line->slope_uncertainty = fixed ? (double)NAN : line->scatter / sqrt(fit.sum_xx);
-    line->uncertainty = 0.5 * median(room->work, n) + own_error;
+    line->uncertainty = 0.5 * median(work, n) + own_error;
     line->n_used = n;
 }
 
 enum wb_status wb_clock_fit_probes(struct wb_clock_line *line, const struct wb_clock_probe *probes,
                                    size_t n, double nominal_slope)
 {
-    double *const scratch = malloc((2 * n + 1) * sizeof *scratch);
-    const struct probe_fit room = {.kept = malloc((n + 1) * sizeof *room.kept),
-                                   .points = malloc((n + 1) * sizeof *room.points),
-                                   .weights = scratch,
-                                   .work = scratch ? scratch + n : NULL};
-    enum wb_status status = WB_OK;
-    if (!room.kept || !room.points || !scratch) {
-        status = WB_ERR_MEMORY;
-    } else {
-        size_t n_usable = 0;
+    struct wb_clock_probe *const kept = malloc((n + 1) * sizeof *kept);
+    struct point *const points = malloc((n + 1) * sizeof *points);
+    double *const work = malloc((n + 1) * sizeof *work);
+    enum wb_status status = WB_ERR_MEMORY;
+    if (kept && points && work) {
+        size_t n_kept = 0;
         for (size_t i = 0; i < n; i++) {
             if (isfinite(probes[i].t_device) && round_trip(&probes[i]) >= 0)
-                room.kept[n_usable++] = probes[i];
+                kept[n_kept++] = probes[i];
         }
         *line = (struct wb_clock_line){.n_points = n};
-        const size_t n_kept = keep_best(room.kept, n_usable);
+        n_kept = keep_best(kept, n_kept);
         if (n_kept > 0)
-            fit_kept(line, &room, n_kept, nominal_slope);
-        else
-            status = WB_ERR_DATA;
+            fit_kept(line, kept, n_kept, nominal_slope, points, work);
+        status = n_kept > 0 ? WB_OK : WB_ERR_DATA;
     }
-    free(room.kept);
-    free(room.points);
-    free(scratch);
+    free(kept);
+    free(points);
+    free(work);
     return status;
 }
 
@@ -296,16 +280,19 @@ enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, const double *d
 /* s, delay of stamp i relative to stamp `zero`. */
 static double shift_of(const struct wb_clock_stamps *stamps, size_t i, size_t zero)
 {
+    const double *const device = stamps->device;
+    const double elapsed = device ? device[i] - device[zero] : (double)i - (double)zero;
     return wb_seconds_from_ns(stamps->host_ns[i] - stamps->host_ns[zero]) -
-           stamps->nominal_slope * (stamps->device[i] - stamps->device[zero]);
+           stamps->nominal_slope * elapsed;
 }
 
-/* s, smallest delay, relative to stamp `zero`, of stamps first, first + step, ... that arrived
- * within SETTLING_NS of the first of them. */
-static double least_shift(const struct wb_clock_stamps *stamps, size_t zero, size_t first, int step)
+/* s, smallest delay, relative to stamp `zero`, of stamps first, first + step, ... up to `end`
+ * (exclusive) that arrived within SETTLING_NS of the first of them. */
+static double least_shift(const struct wb_clock_stamps *stamps, size_t zero, size_t first,
+                          size_t end, int step)
 {
     double least = HUGE_VAL;
-    for (size_t i = first; i < stamps->n; i += (size_t)step) {
+    for (size_t i = first; i != end; i += (size_t)step) {
         if (llabs(stamps->host_ns[i] - stamps->host_ns[first]) > SETTLING_NS)
             break;
         least = fmin(least, shift_of(stamps, i, zero));
@@ -332,35 +319,14 @@ size_t wb_clock_split(const struct wb_clock_stamps *stamps, double jump, size_t 
     for (size_t i = 1; i < stamps->n && n_segments < most; i++) {
         if (fabs(shift_of(stamps, i, i - 1)) <= jump)
             continue;
-        /* The delay of a busy host is temporary, a change of the clock is permanent. Walking
-         * backwards ends when the index 0 - 1 wraps beyond n. */
-        const double before = least_shift(stamps, i - 1, i - 1, -1);
-        const double after = least_shift(stamps, i - 1, i, 1);
+        /* The delay of a busy host is temporary, a change of the clock is permanent. */
+        const double before = least_shift(stamps, i - 1, i - 1, SIZE_MAX, -1);
+        const double after = least_shift(stamps, i - 1, i, stamps->n, 1);
         const bool is_late = after > before && is_catching_up(stamps, i);
         if (!is_late && !(fabs(after - before) <= 0.5 * jump))
             starts[n_segments++] = i;
     }
     return n_segments;
-}
-
-/* s, delay of arrival i relative to a constant rate. */
-static double lateness(const int64_t *host_ns, size_t i, size_t zero, double period)
-{
-    return wb_seconds_from_ns(host_ns[i] - host_ns[zero]) - ((double)i - (double)zero) * period;
-}
-
-/* s, smallest delay of readings first, first + step, ... up to `end` (exclusive) that arrived
- * within SETTLING_NS of the first of them. */
-static double least_lateness(const int64_t *host_ns, size_t first, size_t end, int step,
-                             size_t zero, double period)
-{
-    double least = HUGE_VAL;
-    for (size_t i = first; i != end; i += (size_t)step) {
-        if (llabs(host_ns[i] - host_ns[first]) > SETTLING_NS)
-            break;
-        least = fmin(least, lateness(host_ns, i, zero, period));
-    }
-    return least;
 }
 
 /* s, period of the readings: from the median duration of windows of readings, which is insensitive
@@ -384,7 +350,7 @@ static double typical_period(const int64_t *host_ns, size_t n)
 }
 
 /* s, typical jitter of arrivals: the median over windows of the range of the delays. */
-static double usual_jitter(const int64_t *host_ns, size_t n, double period)
+static double usual_jitter(const struct wb_clock_stamps *readings)
 {
     enum {
         MOST = 256,
@@ -392,12 +358,12 @@ static double usual_jitter(const int64_t *host_ns, size_t n, double period)
     };
     double spreads[MOST];
     size_t n_spreads = 0;
-    const size_t stride = n / WINDOW > MOST ? n / MOST : WINDOW;
+    const size_t n = readings->n, stride = n / WINDOW > MOST ? n / MOST : WINDOW;
     for (size_t first = 0; first + WINDOW <= n && n_spreads < MOST; first += stride) {
         double most = -HUGE_VAL, least = HUGE_VAL;
         for (size_t i = first; i < first + WINDOW; i++) {
-            most = fmax(most, lateness(host_ns, i, first, period));
-            least = fmin(least, lateness(host_ns, i, first, period));
+            most = fmax(most, shift_of(readings, i, first));
+            least = fmin(least, shift_of(readings, i, first));
         }
         spreads[n_spreads++] = most - least;
     }
@@ -409,7 +375,9 @@ size_t wb_clock_split_readings(const int64_t *host_ns, size_t n, size_t *starts,
     if (n == 0 || most == 0)
         return 0;
     const double period = typical_period(host_ns, n);
-    const double jitter = usual_jitter(host_ns, n, period);
+    /* The device's time is the number of the reading. */
+    const struct wb_clock_stamps readings = {NULL, host_ns, n, period};
+    const double jitter = usual_jitter(&readings);
     const double least_shift_s = fmax(fmax(0.8 * period, 3e-3), 1.5 * jitter);
     size_t n_segments = 0;
     starts[n_segments++] = 0;
@@ -417,9 +385,8 @@ size_t wb_clock_split_readings(const int64_t *host_ns, size_t n, size_t *starts,
         /* The delay of a busy host is temporary, that of lost readings is permanent. */
         if (wb_seconds_from_ns(host_ns[i] - host_ns[i - 1]) < fmax(2.5 * period, 5e-3))
             continue;
-        const double before =
-            least_lateness(host_ns, i - 1, starts[n_segments - 1] - 1, -1, i, period);
-        const double after = least_lateness(host_ns, i, n, 1, i, period);
+        const double before = least_shift(&readings, i, i - 1, starts[n_segments - 1] - 1, -1);
+        const double after = least_shift(&readings, i, i, n, 1);
         if (after - before > least_shift_s)
             starts[n_segments++] = i;
     }

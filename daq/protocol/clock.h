@@ -52,7 +52,7 @@ WB_MUST_CHECK enum wb_status wb_clock_fit_envelope(struct wb_clock_line *line, c
 
 /* Time stamps of a device and their arrivals. */
 struct wb_clock_stamps {
-    const double *device;   /* s, n of them */
+    const double *device;   /* s, n of them; NULL: the index of the stamp */
     const int64_t *host_ns; /* n of them */
     size_t n;
     double nominal_slope; /* host seconds per device second; see wb_clock_fit_probes() */
