@@ -160,10 +160,9 @@ static void find_rate(const struct wb_doctor *doctor, struct wb_doctor_report *r
     if (wb_listening_run(address, &settings, &heard, &why) != WB_OK ||
         heard.found != WB_LISTENING_LOAD_CELL)
         return;
-    struct wb_doctor_item *const item = wb_doctor_add(report, "load cell", WB_DOCTOR_NOT_READY);
-    snprintf(item->text, sizeof item->text,
-             "readings are received with %s ('%s'): set load_cell.address: %.*s,%s", heard.line,
-             heard.sample, (int)strcspn(address, ","), address, heard.line);
+    wb_doctor_add(report, "load cell", WB_DOCTOR_NOT_READY,
+                  "readings are received with %s ('%s'): set load_cell.address: %.*s,%s",
+                  heard.line, heard.sample, (int)strcspn(address, ","), address, heard.line);
 }
 
 static void judge_disk(const struct wb_doctor *doctor, struct wb_doctor_report *report)
@@ -174,8 +173,7 @@ static void judge_disk(const struct wb_doctor *doctor, struct wb_doctor_report *
     char text[WB_DISK_CHECK_TEXT];
     double bytes = 0.0;
     if (wb_disk_check_measure(&check, folder, &why) != WB_OK) {
-        struct wb_doctor_item *const item = wb_doctor_add(report, "disk", WB_DOCTOR_NOT_READY);
-        snprintf(item->text, sizeof item->text, "%s", why.text);
+        wb_doctor_add(report, "disk", WB_DOCTOR_NOT_READY, "%s", why.text);
         return;
     }
     for (int role = 0; role < WB_INTERLOCK_ROLES; role++)
@@ -183,9 +181,7 @@ static void judge_disk(const struct wb_doctor *doctor, struct wb_doctor_report *
     const bool good = wb_disk_check_judge(
         &check, folder, doctor->seen.listened > 0.0 ? bytes / doctor->seen.listened : 0.0,
         wb_doctor_test_duration(&doctor->request.test, &doctor->rig), text);
-    struct wb_doctor_item *const item =
-        wb_doctor_add(report, "disk", good ? WB_DOCTOR_READY : WB_DOCTOR_NOT_READY);
-    snprintf(item->text, sizeof item->text, "%s", text);
+    wb_doctor_add(report, "disk", good ? WB_DOCTOR_READY : WB_DOCTOR_NOT_READY, "%s", text);
 }
 
 void wb_doctor_close(struct wb_doctor *doctor, struct wb_doctor_report *report)

@@ -30,15 +30,17 @@
 /* Days after which a new check of the load cell is advised. */
 #define CHECK_DAYS 31
 
-struct wb_doctor_item *wb_doctor_add(struct wb_doctor_report *report, const char *name,
-                                     enum wb_doctor_verdict verdict)
+void wb_doctor_add(struct wb_doctor_report *report, const char *name,
+                   enum wb_doctor_verdict verdict, const char *format, ...)
 {
     struct wb_doctor_item *const item =
         &report->items[report->n < WB_DOCTOR_ITEMS ? report->n++ : WB_DOCTOR_ITEMS - 1];
+    va_list arguments;
     item->name = name;
     item->verdict = verdict;
-    item->text[0] = '\0';
-    return item;
+    va_start(arguments, format);
+    vsnprintf(item->text, sizeof item->text, format, arguments);
+    va_end(arguments);
 }
 
 double wb_doctor_test_duration(const struct wb_bend_test_request *test, const struct wb_rig *rig)
@@ -58,18 +60,7 @@ struct look {
     struct wb_doctor_report *report;
 };
 
-static void add(const struct look *look, const char *name, enum wb_doctor_verdict verdict,
-                const char *format, ...) __attribute__((format(printf, 4, 5)));
-
-static void add(const struct look *look, const char *name, enum wb_doctor_verdict verdict,
-                const char *format, ...)
-{
-    struct wb_doctor_item *const item = wb_doctor_add(look->report, name, verdict);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(item->text, sizeof item->text, format, arguments);
-    va_end(arguments);
-}
+#define add(look, name, verdict, ...) wb_doctor_add((look)->report, name, verdict, __VA_ARGS__)
 
 /* Adds the result of a check of `record`: `ready` if it passed, otherwise `text`. */
 static void add_check(const struct look *look, const char *name, bool passed, const char *ready,

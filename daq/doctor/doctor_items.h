@@ -9,10 +9,10 @@
 void wb_doctor_judge(const struct wb_doctor_seen *seen, const struct wb_bend_test_request *test,
                      struct wb_doctor_report *report);
 
-/* Appends one finding and returns its place for the text; the last place is given again where the
- * report is full. */
-struct wb_doctor_item *wb_doctor_add(struct wb_doctor_report *report, const char *name,
-                                     enum wb_doctor_verdict verdict);
+/* Appends one finding; in a full report it replaces the last. */
+void wb_doctor_add(struct wb_doctor_report *report, const char *name,
+                   enum wb_doctor_verdict verdict, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 /* s of the host: how long the test lasts. */
 double wb_doctor_test_duration(const struct wb_bend_test_request *test, const struct wb_rig *rig);
