@@ -7,34 +7,11 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "base/config.h"
 #include "base/timing.h"
 #include "daq/stream/port_user.h"
 
 #define WB_LOG_DOMAIN "stream"
-
-static bool parse_switch(const char *text, int *value)
-{
-    if (strcmp(text, "on") == 0)
-        *value = 1;
-    else if (strcmp(text, "off") == 0)
-        *value = -1;
-    else
-        return false;
-    return true;
-}
-
-static bool parse_flow(const char *text, char *value)
-{
-    if (strcmp(text, "none") == 0)
-        *value = 'n';
-    else if (strcmp(text, "xonxoff") == 0)
-        *value = 'x';
-    else if (strcmp(text, "rtscts") == 0)
-        *value = 'r';
-    else
-        return false;
-    return true;
-}
 
 /* "8n1" */
 static bool parse_frame(const char *text, struct wb_stream_line *line)
@@ -59,19 +36,34 @@ static bool parse_baud(const char *text, int *baud)
     return *baud >= 50 && *baud <= 4000000;
 }
 
+/* dtr=, rts= and flow=. */
+static bool parse_word(const char *text, struct wb_stream_line *line)
+{
+    const struct {
+        const char *text;
+        int *target, value;
+    } words[] = {
+        {"dtr=on", &line->dtr, 1},         {"dtr=off", &line->dtr, -1},
+        {"rts=on", &line->rts, 1},         {"rts=off", &line->rts, -1},
+        {"flow=none", &line->flow, 'n'},   {"flow=xonxoff", &line->flow, 'x'},
+        {"flow=rtscts", &line->flow, 'r'},
+    };
+    for (size_t i = 0; i < WB_COUNT(words); i++) {
+        if (strcmp(text, words[i].text) != 0)
+            continue;
+        *words[i].target = words[i].value;
+        return true;
+    }
+    return false;
+}
+
 static bool parse_option(const char *text, struct wb_stream_line *line)
 {
     if (strcmp(text, "dtr=keep") == 0)
         return line->keeps_dtr = true;
-    if (strncmp(text, "dtr=", 4) == 0)
-        return parse_switch(text + 4, &line->dtr);
-    if (strncmp(text, "rts=", 4) == 0)
-        return parse_switch(text + 4, &line->rts);
-    if (strncmp(text, "flow=", 5) == 0)
-        return parse_flow(text + 5, &line->flow);
     if (strlen(text) == 3 && strspn(text, "0123456789") < 3)
         return parse_frame(text, line);
-    return parse_baud(text, &line->baud);
+    return parse_word(text, line) || parse_baud(text, &line->baud);
 }
 
 enum wb_status wb_stream_parse_line(const char *rest, struct wb_stream_line *line,

@@ -23,7 +23,7 @@ struct wb_stream_line {
     int dtr;        /* +1 on, -1 off, 0: the driver's default */
     bool keeps_dtr; /* DTR is also kept after closing, so that opening again causes no edge */
     int rts;        /* +1 on, -1 off, 0: the driver's default */
-    char flow;      /* 'n' none, 'x' XON/XOFF, 'r' RTS/CTS */
+    int flow;       /* 'n' none, 'x' XON/XOFF, 'r' RTS/CTS */
 };
 
 /* Reads a line as above. Here and below, `why` holds the message of a failure; NULL: it is logged.
