@@ -55,6 +55,11 @@ char *wb_driver_printable(char *text, size_t size, const void *bytes, size_t n)
     return text;
 }
 
+int64_t wb_driver_period_ns(const struct wb_rig *rig, int64_t period_ns)
+{
+    return (int64_t)((double)period_ns / (rig->time_scale > 1.0 ? rig->time_scale : 1.0));
+}
+
 bool wb_driver_is_report_due(uint64_t n)
 {
     while (n > 3 && n % 10 == 0)

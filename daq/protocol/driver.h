@@ -90,6 +90,9 @@ void wb_driver_remark(const struct wb_sink *sink, enum wb_log_level level, int64
  * has no control sequences. Text that does not fit is cut. Returns `text`. */
 char *wb_driver_printable(char *text, size_t size, const void *bytes, size_t n);
 
+/* ns of the host for a period of a rig, whose clocks may run faster. */
+int64_t wb_driver_period_ns(const struct wb_rig *rig, int64_t period_ns);
+
 /* True for the 1st, 2nd, 3rd, 10th, 20th, 30th, 100th, ... occurrence: repeated remarks are
  * reported less and less often. */
 bool wb_driver_is_report_due(uint64_t n);

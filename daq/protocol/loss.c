@@ -111,6 +111,13 @@ static void remember(struct wb_loss *loss, double t)
         loss->n_times++;
 }
 
+static void add_open(struct wb_loss_counts *counts, const struct wb_loss_open *open)
+{
+    counts->missing += open->missing;
+    counts->gaps += open->gaps;
+    counts->longest_gap = fmax(counts->longest_gap, open->longest_gap);
+}
+
 static void open_gap(struct wb_loss *loss, double step)
 {
     loss->young.missing += (uint64_t)(round(step / loss->counts.period) - 1.0);
@@ -121,13 +128,10 @@ static void open_gap(struct wb_loss *loss, double step)
 /* Makes gaps final that are old enough. */
 static void grow_old(struct wb_loss *loss)
 {
-    struct wb_loss_counts *const counts = &loss->counts;
     if (++loss->n_passed < TURNED_ROUND)
         return;
     loss->has_begun = true;
-    counts->missing += loss->old.missing;
-    counts->gaps += loss->old.gaps;
-    counts->longest_gap = fmax(counts->longest_gap, loss->old.longest_gap);
+    add_open(&loss->counts, &loss->old);
     loss->old = loss->young;
     memset(&loss->young, 0, sizeof loss->young);
     loss->n_passed = 0;
@@ -220,13 +224,6 @@ static void add_missing(const struct wb_loss *loss, int i, struct wb_loss_open *
     sum->missing += (uint64_t)missing;
     sum->gaps += n_long < 1 ? 1 : n_long < missing ? (uint64_t)n_long : (uint64_t)missing;
     sum->longest_gap = fmax(sum->longest_gap, widest - loss->counts.period);
-}
-
-static void add_open(struct wb_loss_counts *counts, const struct wb_loss_open *open)
-{
-    counts->missing += open->missing;
-    counts->gaps += open->gaps;
-    counts->longest_gap = fmax(counts->longest_gap, open->longest_gap);
 }
 
 /* Removes the oldest window; the samples missing up to the next one become final. */

@@ -556,11 +556,9 @@ static void send_probe(struct natnet_state *state, int64_t now_ns, struct wb_out
     if (!wb_outbox_add(outbox, buffer, n))
         return;
     state->n_probes++;
-    const double scale = state->rig.time_scale > 1.0 ? state->rig.time_scale : 1.0;
-    const int64_t period = (int64_t)((double)PROBE_PERIOD_NS / scale);
-    state->next_probe_ns =
-        now_ns +
-        (state->n_probes < BURST_PROBES && period > BURST_PERIOD_NS ? BURST_PERIOD_NS : period);
+    const int64_t period = wb_driver_period_ns(&state->rig, PROBE_PERIOD_NS);
+    const bool burst = state->n_probes < BURST_PROBES && period > BURST_PERIOD_NS;
+    state->next_probe_ns = now_ns + (burst ? BURST_PERIOD_NS : period);
 }
 
 static void send_query(struct natnet_state *state, int64_t now_ns, struct wb_outbox *outbox)

@@ -461,8 +461,7 @@ static void tick(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
     if (state->is_cancelled && state->state == WB_STAGE_JOG)
         (void)send_byte(outbox, WB_GRBL_JOG_CANCEL);
     const int64_t period = now_ns < state->fast_until_ns ? FAST_POLL_PERIOD_NS : POLL_PERIOD_NS;
-    const double scale = state->rig.time_scale > 1.0 ? state->rig.time_scale : 1.0;
-    state->next_poll_ns = now_ns + (int64_t)((double)period / scale);
+    state->next_poll_ns = now_ns + wb_driver_period_ns(&state->rig, period);
 }
 
 static enum wb_status command(void *opaque, enum wb_stage_command what, double distance,

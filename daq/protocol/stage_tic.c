@@ -285,9 +285,8 @@ static void ask(struct tic_state *state, struct wb_outbox *outbox)
         return;
     state->waits = true;
     state->asked_ns = state->now_ns;
-    const double scale = state->rig.time_scale > 1.0 ? state->rig.time_scale : 1.0;
     const int64_t period = state->now_ns < state->fast_until_ns ? FAST_POLL_NS : POLL_NS;
-    state->next_poll_ns = state->now_ns + (int64_t)((double)period / scale);
+    state->next_poll_ns = state->now_ns + wb_driver_period_ns(&state->rig, period);
 }
 
 static void start(void *opaque, int64_t now_ns, struct wb_outbox *outbox)
