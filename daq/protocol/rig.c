@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/config.h"
@@ -10,6 +11,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "daq/protocol/cell_calibration.h"
+#include "daq/protocol/cells.h"
 #include "daq/protocol/loadcell_preset.h"
 
 #define WB_LOG_DOMAIN "rig"
@@ -25,25 +27,22 @@ static const char *const tares[] = {"unloaded", "counterweight", NULL};
 static const char *const ups[] = {"y", "z", NULL};
 static const char *const axes[] = {"X", "Y", "Z", NULL};
 
-static const char *const wire_schemes[] = {"serial:", "pty:", "memory:", "sim:", NULL};
-static const char *const network_schemes[] = {"udp:", "memory:", "sim:", NULL};
+#define WIRE_SCHEMES "serial: or pty:"
+#define NETWORK_SCHEMES "udp:"
+#define TEST_SCHEMES "memory: sim:" /* for tests and virtual time: not offered to users */
 
 /* Rejects an address whose scheme the role cannot use; the stream checks the rest. */
 static enum wb_status check_address(const struct wb_config_node *map, const char *address,
-                                    const char *const *schemes)
+                                    const char *schemes)
 {
-    char expected[64] = "";
-    for (int i = 0; schemes[i]; i++) {
-        if (strncmp(address, schemes[i], strlen(schemes[i])) == 0)
-            return WB_OK;
-        /* For tests and virtual time: not offered to users. */
-        if (strcmp(schemes[i], "memory:") == 0 || strcmp(schemes[i], "sim:") == 0)
-            continue;
-        const size_t used = strlen(expected);
-        snprintf(expected + used, sizeof expected - used, "%s%s", i ? " or " : "", schemes[i]);
-    }
+    const char *const colon = strchr(address, ':');
+    char scheme[16] = "";
+    if (colon)
+        snprintf(scheme, sizeof scheme, "%.*s", (int)(colon + 1 - address), address);
+    if (wb_cells_lists(schemes, scheme) || wb_cells_lists(TEST_SCHEMES, scheme))
+        return WB_OK;
     return wb_config_refuse(map, "address", "expected an address that starts with %s, not '%s'",
-                            expected, address);
+                            schemes, address);
 }
 
 static enum wb_status check_sign(const struct wb_config_node *map, const char *key, int sign)
@@ -53,20 +52,10 @@ static enum wb_status check_sign(const struct wb_config_node *map, const char *k
     return WB_OK;
 }
 
-static int hex_value(char c)
-{
-    if (c >= '0' && c <= '9')
-        return c - '0';
-    if (c >= 'a' && c <= 'f')
-        return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F')
-        return c - 'A' + 10;
-    return -1;
-}
-
 /* Resolves \r, \n, \t, \\ and \xNN in place. YAML does this only between double quotes. */
 static enum wb_status resolve_escapes(const struct wb_config_node *map, const char *key, char *text)
 {
+    static const char letters[] = "rnt\\", bytes[] = "\r\n\t\\";
     char *out = text;
     for (const char *in = text; *in; in++) {
         if (*in != '\\') {
@@ -74,23 +63,16 @@ static enum wb_status resolve_escapes(const struct wb_config_node *map, const ch
             continue;
         }
         in++;
-        int high, low;
-        if (*in == 'r') {
-            *out++ = '\r';
-        } else if (*in == 'n') {
-            *out++ = '\n';
-        } else if (*in == 't') {
-            *out++ = '\t';
-        } else if (*in == '\\') {
-            *out++ = '\\';
-        } else if (*in == 'x' && (high = hex_value(in[1])) >= 0 && (low = hex_value(in[2])) >= 0 &&
-                   high + low > 0) {
-            *out++ = (char)(high * 16 + low);
+        const char *const letter = *in ? strchr(letters, *in) : NULL;
+        long code = letter ? bytes[letter - letters] : 0;
+        if (*in == 'x' && isxdigit((unsigned char)in[1]) && isxdigit((unsigned char)in[2])) {
+            code = strtol((const char[]){in[1], in[2], '\0'}, NULL, 16);
             in += 2;
-        } else {
+        }
+        if (code == 0)
             return wb_config_refuse(map, key,
                                     "expected one of \\r \\n \\t \\\\ \\xNN after a backslash");
-        }
+        *out++ = (char)code;
     }
     *out = '\0';
     return WB_OK;
@@ -343,7 +325,7 @@ static enum wb_status read_load_cell(const struct wb_config_node *map, double gr
     cell->overload = cell->capacity * overload_fraction;
     cell->noise = noise_mass * gravity;
     strcpy(cell->protocol, load_protocols[protocol]);
-    WB_TRY(check_address(map, cell->address, wire_schemes));
+    WB_TRY(check_address(map, cell->address, WIRE_SCHEMES));
     WB_TRY(wb_config_check_date(map, "calibration_date", cell->calibration_date));
     WB_TRY(read_check_masses(masses, cell));
     WB_TRY(check_sign(map, "sign", cell->sign));
@@ -367,7 +349,7 @@ static enum wb_status read_mocap(const struct wb_config_node *map, struct wb_rig
     WB_TRY(wb_config_map(map, table, WB_COUNT(table)));
     strcpy(mocap->protocol, mocap_protocols[protocol]);
     mocap->up = ups[up][0];
-    return check_address(map, mocap->address, network_schemes);
+    return check_address(map, mocap->address, NETWORK_SCHEMES);
 }
 
 static enum wb_status read_stage(const struct wb_config_node *map, struct wb_rig_stage *stage)
@@ -395,7 +377,7 @@ static enum wb_status read_stage(const struct wb_config_node *map, struct wb_rig
                                 "this key is missing: a Tic counts microsteps, and only you know "
                                 "how many make a millimetre");
     WB_TRY(check_sign(map, "down", stage->down));
-    return check_address(map, stage->address, wire_schemes);
+    return check_address(map, stage->address, WIRE_SCHEMES);
 }
 
 static enum wb_status read_strand(const struct wb_config_node *map, struct wb_rig_strand *strand)
