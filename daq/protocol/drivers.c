@@ -1,15 +1,14 @@
 #include "daq/protocol/drivers.h"
-#include "daq/protocol/drivers_private.h"
 
 #include <string.h>
 
-#define ADDRESS(driver) &driver,
-const struct wb_driver *const wb_drivers[] = {WB_DRIVERS(ADDRESS) NULL};
+#include "base/config.h"
 
 const struct wb_driver *wb_drivers_find(enum wb_role role, const char *protocol)
 {
-    for (const struct wb_driver *const *at = wb_drivers; *at; at++)
-        if ((*at)->role == role && strcmp((*at)->name, protocol) == 0)
-            return *at;
+    static const struct wb_driver *const drivers[] = {WB_DRIVERS(WB_DRIVERS_ADDRESS)};
+    for (size_t i = 0; i < WB_COUNT(drivers); i++)
+        if (drivers[i]->role == role && strcmp(drivers[i]->name, protocol) == 0)
+            return drivers[i];
     return NULL;
 }

@@ -16,6 +16,8 @@
 WB_DRIVERS(WB_DRIVERS_DECLARE)
 #undef WB_DRIVERS_DECLARE
 
+#define WB_DRIVERS_ADDRESS(driver) &driver,
+
 /* Finds a driver by role and protocol name; NULL: unknown. */
 const struct wb_driver *wb_drivers_find(enum wb_role role, const char *protocol);
 

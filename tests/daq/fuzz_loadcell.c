@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "daq/protocol/drivers_private.h"
+#include "daq/protocol/drivers.h"
 #include "daq/protocol/loadcell_preset.h"
 
 /* A hash of everything but the time, which the cuts do change. */
@@ -68,9 +68,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)
         FUZZ_REQUIRE(isfinite(reading.value));
     if (wb_line_force(&reading, &rig.load_cell, rig.gravity, &force))
         FUZZ_REQUIRE(reading.kind != WB_LINE_VALUE || !isnan(force));
-    for (const struct wb_driver *const *at = wb_drivers; *at; at++)
-        if ((*at)->role == WB_ROLE_LOAD)
-            fuzz_cuts(*at, &rig, (struct wb_sink){.load = take_load}, bytes + 1, n - 1);
+    static const struct wb_driver *const drivers[] = {WB_DRIVERS(WB_DRIVERS_ADDRESS)};
+    for (size_t i = 0; i < sizeof drivers / sizeof drivers[0]; i++)
+        if (drivers[i]->role == WB_ROLE_LOAD)
+            fuzz_cuts(drivers[i], &rig, (struct wb_sink){.load = take_load}, bytes + 1, n - 1);
     return 0;
 }
 
