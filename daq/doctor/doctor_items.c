@@ -9,7 +9,6 @@
 #include "base/units.h"
 #include "daq/acquire/silence_check.h"
 #include "daq/acquire/stage_check.h"
-#include "daq/protocol/natnet_watch.h"
 #include "daq/test/check_log.h"
 
 /* Accepted relative difference from the announced rate. */

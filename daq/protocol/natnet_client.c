@@ -384,8 +384,8 @@ static void remark_frame(struct natnet_state *state, int64_t t_ns, const struct 
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "markers",
                          "a frame has %d markers; only the first %d are used: mask reflections",
                          frame->n_labelled, frame->mocap.n_markers);
-    if (wb_natnet_version_at_least(state->version, 2, 6) && !(frame->mocap.params & 4) &&
-        first_time(state, SAID_NOT_LIVE))
+    if (wb_natnet_version_at_least(state->version, 2, 6) &&
+        !(frame->mocap.params & WB_FRAME_LIVE) && first_time(state, SAID_NOT_LIVE))
         wb_driver_remark(
             sink, WB_LOG_INFO, t_ns, "mode",
             "the server does not flag its frames as live: it may be playing back a take");
@@ -437,7 +437,7 @@ static void receive_frame(struct natnet_state *state, int64_t t_ns,
         mocap->t_clock =
             seconds_of_ticks(mocap->camera_data_received, state->server.clock_frequency);
     const double scale = state->rig.time_scale > 1.0 ? state->rig.time_scale : 1.0;
-    if (wb_natnet_watch_frame(&state->watch, mocap, OVERTAKEN * scale, sink) == WB_NATNET_RESTARTED)
+    if (wb_natnet_watch_frame(&state->watch, mocap, OVERTAKEN * scale, sink))
         restart_queries(state);
     mocap->segment = state->watch.segment;
     convert_markers(state, t_ns, sink);

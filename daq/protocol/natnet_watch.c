@@ -36,25 +36,17 @@ static void watch_take(struct wb_natnet_watch *watch, const struct wb_mocap_fram
                      "recorded: check that Motive is in live mode and its disk has space");
 }
 
-static bool has_restarted(const struct wb_natnet_watch *watch, const struct wb_mocap_frame *frame,
-                          double back)
-{
-    return watch->has_frame && frame->t_device < watch->newest - back;
-}
-
 /* Whether a bit is set that was not set in the previous frame. */
 static bool rises(const struct wb_natnet_watch *watch, const struct wb_mocap_frame *frame, int bit)
 {
     return watch->has_frame && (frame->params & bit) && !(watch->params & bit);
 }
 
-enum wb_natnet_news wb_natnet_watch_frame(struct wb_natnet_watch *watch,
-                                          const struct wb_mocap_frame *frame, double back,
-                                          const struct wb_sink *sink)
+bool wb_natnet_watch_frame(struct wb_natnet_watch *watch, const struct wb_mocap_frame *frame,
+                           double back, const struct wb_sink *sink)
 {
-    enum wb_natnet_news news = WB_NATNET_SAME;
-    if (has_restarted(watch, frame, back)) {
-        news = WB_NATNET_RESTARTED;
+    const bool restarted = watch->has_frame && frame->t_device < watch->newest - back;
+    if (restarted) {
         watch->segment++;
         if (wb_driver_is_report_due(++watch->n_restarts))
             wb_driver_remark(sink, WB_LOG_WARNING, frame->t_ns, "restart",
@@ -65,7 +57,6 @@ enum wb_natnet_news wb_natnet_watch_frame(struct wb_natnet_watch *watch,
         watch->newest = frame->t_device;
     } else if (rises(watch, frame, WB_FRAME_MODELS_CHANGED) ||
                rises(watch, frame, WB_FRAME_BITSTREAM_CHANGED)) {
-        news = WB_NATNET_NEW_MODELS;
         watch->segment++;
         if (wb_driver_is_report_due(++watch->n_changes))
             wb_driver_remark(sink, WB_LOG_WARNING, frame->t_ns, "models",
@@ -78,5 +69,5 @@ enum wb_natnet_news wb_natnet_watch_frame(struct wb_natnet_watch *watch,
         watch->newest = frame->t_device;
     watch->params = frame->params;
     watch->has_frame = true;
-    return news;
+    return restarted;
 }

@@ -31,17 +31,11 @@ struct wb_natnet_watch {
     int64_t promised_ns;
 };
 
-enum wb_natnet_news {
-    WB_NATNET_SAME,
-    WB_NATNET_NEW_MODELS,
-    WB_NATNET_RESTARTED /* earlier queries must be repeated */
-};
-
-/* Adds a frame. `back` (s of the server's clock): a frame may be out of order by this much; a
- * larger step back is a restart. */
-enum wb_natnet_news wb_natnet_watch_frame(struct wb_natnet_watch *watch,
-                                          const struct wb_mocap_frame *frame, double back,
-                                          const struct wb_sink *sink);
+/* Adds a frame. Returns whether the server was restarted: earlier queries must be repeated. `back`
+ * (s of the server's clock): a frame may be out of order by this much; a larger step back is a
+ * restart. */
+bool wb_natnet_watch_frame(struct wb_natnet_watch *watch, const struct wb_mocap_frame *frame,
+                           double back, const struct wb_sink *sink);
 
 /* The server agreed at t_ns to record a take; a warning is given if its frames do not confirm it.
  */
