@@ -50,6 +50,7 @@ struct reading {
     /* From header and parameters. */
     bool is_real, is_unsigned;
     double scale, unit; /* of integers; m */
+    size_t word;        /* bytes of a value */
     size_t n_points, n_channels, per_frame, n_frames;
     size_t data; /* offset */
     int32_t first;
@@ -305,6 +306,7 @@ static enum wb_status read_layout(struct reading *reading)
         return reject_parameter(reading, "POINT:SCALE", "expected a scale other than 0, not %g",
                                 scale);
     reading->is_real = scale < 0.0;
+    reading->word = reading->is_real ? 4 : 2;
     reading->scale = fabs(scale);
     if (!find_number(reading, "POINT", "RATE", &rate))
         rate = get_float(reading, reading->bytes + 20);
@@ -407,15 +409,14 @@ static double get_raw(const struct reading *reading, const uint8_t *at)
 
 static enum wb_status read_point(struct reading *reading, size_t point, const uint8_t *at)
 {
-    const size_t word = reading->is_real ? 4 : 2;
     const double factor = (reading->is_real ? 1.0 : reading->scale) * reading->unit;
-    const double residual = get_raw(reading, at + 3 * word);
+    const double residual = get_raw(reading, at + 3 * reading->word);
     double position[3];
     bool zero = true;
     if (residual < 0.0 || isnan(residual))
         return WB_OK;
     for (int k = 0; k < 3; k++) {
-        const double raw = get_raw(reading, at + (size_t)k * word);
+        const double raw = get_raw(reading, at + (size_t)k * reading->word);
         if (!isfinite(raw))
             return WB_OK;
         zero &= raw == 0.0;
@@ -433,15 +434,14 @@ static enum wb_status read_point(struct reading *reading, size_t point, const ui
 
 static enum wb_status read_frame(struct reading *reading, size_t frame, const uint8_t *at)
 {
-    const size_t word = reading->is_real ? 4 : 2;
     struct wb_take *const take = reading->take;
     (void)wb_take_add_frame(take, reading->first + (int32_t)frame,
                             (double)(reading->first + (int32_t)frame) / take->rate);
-    for (size_t i = 0; i < reading->n_points; i++, at += 4 * word)
+    for (size_t i = 0; i < reading->n_points; i++, at += 4 * reading->word)
         WB_TRY(read_point(reading, i, at));
     const size_t n = reading->n_channels * reading->per_frame;
     float *const analog = n > 0 ? wb_take_add_analog(take, n) : NULL;
-    for (size_t i = 0; i < n; i++, at += word) {
+    for (size_t i = 0; i < n; i++, at += reading->word) {
         const size_t channel = i % reading->n_channels;
         const double raw = reading->is_unsigned && !reading->is_real ? get_word(reading, at)
                                                                      : get_raw(reading, at);
@@ -452,8 +452,8 @@ static enum wb_status read_frame(struct reading *reading, size_t frame, const ui
 
 static enum wb_status read_data(struct reading *reading)
 {
-    const size_t word = reading->is_real ? 4 : 2;
-    const size_t size = word * (4 * reading->n_points + reading->n_channels * reading->per_frame);
+    const size_t size =
+        reading->word * (4 * reading->n_points + reading->n_channels * reading->per_frame);
     const size_t there = (reading->n - reading->data) / size;
     size_t n = reading->n_frames;
     /* 65535 is the largest 16-bit count: use the length of the file. */
@@ -463,9 +463,7 @@ static enum wb_status read_data(struct reading *reading)
         return reject_parameter(reading, "POINT:FRAMES", "%s", "expected at least 1 frame");
     if ((double)reading->first + (double)n > (double)INT_MAX)
         return reject_parameter(reading, "POINT:FRAMES",
-                                "%zu frames exceed the range of frame "
-                                "numbers",
-                                n);
+                                "%zu frames exceed the range of frame numbers", n);
     reading->take->declared_frames = n;
     for (size_t i = 0; i < n && i < there; i++)
         WB_TRY(read_frame(reading, i, reading->bytes + reading->data + i * size));
