@@ -1,8 +1,8 @@
 #include "daq/protocol/grbl.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/config.h"
@@ -15,31 +15,24 @@
 /* Parses 1 to 4 digits. */
 static bool parse_number(const char *text, int *number)
 {
-    int value = 0, n = 0;
-    for (; isdigit((unsigned char)text[n]) && n < 5; n++)
-        value = 10 * value + (text[n] - '0');
+    const size_t n = strspn(text, "0123456789");
     if (n == 0 || n > 4 || text[n] != '\0')
         return false;
-    *number = value;
+    *number = atoi(text);
     return true;
 }
 
 /* Parses up to three numbers separated by commas; returns their number, 0 if one is invalid. */
 static int parse_triple(const char *text, double values[3])
 {
-    char copy[96];
+    char copy[96], *rest = copy;
     if (strlen(text) >= sizeof copy)
         return 0;
     strcpy(copy, text);
     int n = 0;
-    for (char *part = copy; part && n < 3; n++) {
-        char *const comma = strchr(part, ',');
-        if (comma)
-            *comma = '\0';
+    for (const char *part; n < 3 && (part = strsep(&rest, ",")); n++)
         if (!wb_number_parse(part, &values[n]))
             return 0;
-        part = comma ? comma + 1 : NULL;
-    }
     return n;
 }
 
@@ -97,19 +90,14 @@ static bool parse_report(char *text, struct wb_grbl_report *report)
     return true;
 }
 
-static void parse_setting(const char *text, struct wb_grbl_line *line)
+static void parse_setting(char *text, struct wb_grbl_line *line)
 {
-    char number[8];
-    const char *const equals = strchr(text, '=');
-    const size_t length = equals ? (size_t)(equals - text) : 0;
-    if (length == 0 || length >= sizeof number)
-        return;
-    memcpy(number, text, length);
-    number[length] = '\0';
-    if (!parse_number(number, &line->number))
+    char *value = text;
+    const char *const number = strsep(&value, "=");
+    if (!value || !parse_number(number, &line->number))
         return;
     line->kind = WB_GRBL_LINE_SETTING;
-    if (!wb_number_parse(equals + 1, &line->value))
+    if (!wb_number_parse(value, &line->value))
         line->value = (double)NAN;
 }
 
