@@ -1,7 +1,6 @@
 #include "daq/protocol/motion.h"
 
 #include <math.h>
-#include <string.h>
 
 double wb_motion_finish(const struct wb_motion *motion)
 {
@@ -31,23 +30,20 @@ void wb_motion_plan(struct wb_motion *motion, double start, double from, double 
 {
     const double top = limits->speed, acceleration = limits->acceleration;
     const double way = fabs(end - from);
-    memset(motion, 0, sizeof *motion);
-    motion->start = start;
-    motion->from = from;
-    motion->end = end;
-    motion->direction = end < from ? -1.0 : 1.0;
     /* Highest speed that permits braking within the remaining distance. */
     const double reachable = sqrt(acceleration * way + 0.5 * speed * speed);
     const double peak = fmin(fmax(top, speed), reachable);
     const double up = fmax(peak - speed, 0.0) / acceleration, down = peak / acceleration;
     const double cruise = way - 0.5 * up * (speed + peak) - 0.5 * down * peak;
-    motion->duration[0] = up;
-    motion->duration[1] = peak > 0.0 ? fmax(cruise, 0.0) / peak : 0.0;
-    motion->duration[2] = down;
-    motion->speed[0] = speed;
-    motion->speed[1] = motion->speed[2] = peak;
-    motion->acceleration[0] = acceleration;
-    motion->acceleration[2] = -acceleration;
+    *motion = (struct wb_motion){
+        .start = start,
+        .from = from,
+        .end = end,
+        .direction = end < from ? -1.0 : 1.0,
+        .duration = {up, peak > 0.0 ? fmax(cruise, 0.0) / peak : 0.0, down},
+        .speed = {speed, peak, peak},
+        .acceleration = {acceleration, 0.0, -acceleration},
+    };
 }
 
 void wb_motion_brake(struct wb_motion *motion, double t, double acceleration)
