@@ -124,8 +124,7 @@ static void judge_drift(const struct look *look)
     if (fabs(slope) > DRIFT_ERRORS * error && fabs(slope) * duration > DRIFT_SHARE * capacity)
         add(look, "drift", WB_DOCTOR_NOTE,
             "the zero drifts by %+.2f mN/min, which is %.1f %% of the capacity over a test: let "
-            "the "
-            "cell warm up, shield it from draught, keep the strand from swinging",
+            "the cell warm up, shield it from draught, keep the strand from swinging",
             per_minute / WB_MN, fabs(slope) * duration / capacity / WB_PERCENT);
     else
         add(look, "drift", WB_DOCTOR_READY, "%+.1f mN/min, +- %.1f", per_minute / WB_MN,
@@ -287,8 +286,8 @@ static void judge_lateness(const struct look *look)
     if (late > LATE_FRAMES)
         add(look, "delay", WB_DOCTOR_NOTE,
             "frames typically arrive %.0f ms later than the fastest one, which delays the checks "
-            "of "
-            "limits by as much: check the network (WLAN, energy saving of the interface) and the "
+            "of limits by as much: check the network (WLAN, energy saving of the interface) and "
+            "the "
             "load of both computers",
             late * 1e3);
     else
@@ -319,8 +318,7 @@ static void judge_clock(const struct look *look)
     else if (fabs(drift) > CLOCK_DRIFT + 3.0 * error)
         add(look, "clock", WB_DOCTOR_NOTE,
             "the cameras' clock runs %+.0f ppm relative to this computer's, probably because one "
-            "of "
-            "them is being adjusted; the alignment corrects for it",
+            "of them is being adjusted; the alignment corrects for it",
             drift / WB_PPM);
     else
         add(look, "clock", WB_DOCTOR_READY,
@@ -474,8 +472,7 @@ static void judge_stage(const struct look *look)
     if (idle && look->latest->stage.was_reset)
         add(look, "stage", WB_DOCTOR_NOTE,
             "its controller restarted when the port was opened and lost its position: a test "
-            "counts "
-            "travel from the present position; for the limits of the firmware to apply, run "
+            "counts travel from the present position; for the limits of the firmware to apply, run "
             "'wirebench stage %s home' without the specimen",
             path);
     add_latency(look, WB_ROLE_STAGE, "stage");

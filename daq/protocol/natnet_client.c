@@ -378,8 +378,7 @@ static void remark_frame(struct natnet_state *state, int64_t t_ns, const struct 
     if (frame->n_labelled == 0 && frame->n_others > 0 && first_time(state, SAID_NO_LABELLED))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "markers",
                          "only the legacy list of markers is streamed: enable labelled and "
-                         "unlabelled markers in "
-                         "the server's streaming settings");
+                         "unlabelled markers in the server's streaming settings");
     if (frame->n_labelled > frame->mocap.n_markers && first_time(state, SAID_TOO_MANY))
         wb_driver_remark(sink, WB_LOG_WARNING, t_ns, "markers",
                          "a frame has %d markers; only the first %d are used: mask reflections",

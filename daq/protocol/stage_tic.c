@@ -71,8 +71,7 @@ static void find_fault(const struct wb_tic_settings *tic, char *text, size_t siz
     if (tic->control_mode != 0)
         snprintf(text, size,
                  "the Tic's control mode is %d, which ignores the serial port: choose Serial / I2C "
-                 "/ USB "
-                 "%s",
+                 "/ USB %s",
                  tic->control_mode, where);
     else if (tic->command_timeout_ms == 0)
         snprintf(text, size,
