@@ -103,7 +103,6 @@ static void deliver_overload(struct wb_loadcell *loadcell, struct wb_load_sample
 {
     char text[64];
     sample->overload = true;
-    loadcell->n_overloads++;
     if (!loadcell->overloaded)
         wb_driver_remark(
             sink, WB_LOG_ERROR, sample->t_ns, "overload", "the load cell is out of range: '%s'",

@@ -24,7 +24,7 @@ struct wb_loadcell {
     uint64_t n_lines;    /* lines received, readings or not */
     uint64_t lines_seen; /* n_lines when the stream was last checked for silence */
     uint64_t n_samples;  /* samples delivered: index of the next sample */
-    uint64_t n_refused, n_overloads;
+    uint64_t n_refused;
     char first_unit[16], last_unit[16]; /* as printed */
     bool overloaded;                    /* the last sample was an overload */
     bool contradicted;                  /* a contradiction to the rig file's unit was reported */
