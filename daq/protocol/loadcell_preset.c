@@ -19,19 +19,19 @@
  */
 static const struct wb_loadcell_preset presets[] = {
     {
+        /* Loadstar DI-100, DI-1000: decimal pounds */
         .name = "loadstar",
-        .summary = "Loadstar DI-100, DI-1000: decimal pounds",
         LOADSTAR,
     },
     {
+        /* Loadstar iLoad, DQ-1000: thousandths of a pound */
         .name = "loadstar-iload",
-        .summary = "Loadstar iLoad, DQ-1000: thousandths of a pound",
         .scale = 1e-3,
         LOADSTAR,
     },
     {
+        /* Mark-10 force gauges; tension is negative */
         .name = "mark-10",
-        .summary = "Mark-10 force gauges; tension is negative",
         .line = "115200,8n1",
         .sign = -1,
         .request = "?C\r",
@@ -47,8 +47,8 @@ static const struct wb_loadcell_preset presets[] = {
             },
     },
     {
+        /* KERN balances, print format of 14 or 15 characters */
         .name = "kern",
-        .summary = "KERN balances, print format of 14 or 15 characters",
         .line = "1200,8n2",
         .start = "O1\r\n",
         .stop = "O0\r\n",
@@ -57,8 +57,8 @@ static const struct wb_loadcell_preset presets[] = {
         .answers = {{"A00", NULL}, {"E01", "the balance rejected a command (E01)"}},
     },
     {
+        /* KERN balances (PCB, FKB and others) polled with the letter w */
         .name = "kern-asked",
-        .summary = "KERN balances (PCB, FKB and others) polled with the letter w",
         .line = "9600,8n1",
         .unit_rule = WB_UNIT_IF_STABLE,
         .request = "w",
@@ -67,16 +67,16 @@ static const struct wb_loadcell_preset presets[] = {
         .overloads = {"Error"},
     },
     {
+        /* Arduino with HX711, sketches of the library HX711_ADC */
         .name = "hx711-adc",
-        .summary = "Arduino with HX711, sketches of the library HX711_ADC",
         .line = "57600,8n1",
         .unit_rule = WB_UNIT_OF_RIG_FILE,
         .tare = "t",
         .settle_ns = 2500 * MS,
     },
     {
+        /* Arduino with HX711, sketches of bogde's library HX711 */
         .name = "hx711-bogde",
-        .summary = "Arduino with HX711, sketches of bogde's library HX711",
         .line = "38400,8n1",
         .unit_rule = WB_UNIT_OF_RIG_FILE,
         .delimiter = '|',
@@ -84,14 +84,14 @@ static const struct wb_loadcell_preset presets[] = {
         .settle_ns = 2500 * MS,
     },
     {
+        /* Arduino with HX711, sketches of SparkFun */
         .name = "hx711-sparkfun",
-        .summary = "Arduino with HX711, sketches of SparkFun",
         .line = "9600,8n1",
         .settle_ns = 2500 * MS,
     },
     {
+        /* A&D balances, A&D standard format */
         .name = "a-and-d",
-        .summary = "A&D balances, A&D standard format",
         .line = "2400,7e1",
         .terminator = "crlf",
         .start = "SIR\r\n",
@@ -110,8 +110,8 @@ static const struct wb_loadcell_preset presets[] = {
             },
     },
     {
+        /* Ohaus balances, Ohaus commands */
         .name = "ohaus",
-        .summary = "Ohaus balances, Ohaus commands",
         .line = "9600,8n1",
         .start = "CP\r\n",
         .stop = "0P\r\n",
@@ -126,8 +126,8 @@ static const struct wb_loadcell_preset presets[] = {
             },
     },
     {
+        /* Ohaus Scout Pro and Traveler */
         .name = "ohaus-scout",
-        .summary = "Ohaus Scout Pro and Traveler",
         .line = "2400,8n1",
         .start = "CA\r\n",
         .stop = "0A\r\n",
@@ -136,8 +136,8 @@ static const struct wb_loadcell_preset presets[] = {
         .answers = {{"Err 8.3", NULL, true}, {"Err 8.4", NULL, true}},
     },
     {
+        /* Sartorius balances, SBI format of 16 or 22 characters */
         .name = "sartorius",
-        .summary = "Sartorius balances, SBI format of 16 or 22 characters",
         .line = "9600,8o1",
         .terminator = "crlf",
         .unit_rule = WB_UNIT_IF_STABLE,
@@ -152,8 +152,8 @@ static const struct wb_loadcell_preset presets[] = {
             },
     },
     {
+        /* Radwag balances and indicators */
         .name = "radwag",
-        .summary = "Radwag balances and indicators",
         .line = "9600,8n1",
         .terminator = "crlf",
         .start = "C1\r\n",
@@ -170,13 +170,13 @@ static const struct wb_loadcell_preset presets[] = {
             },
     },
     {
+        /* weighing indicators that print `ST,GS,+  4.876kg` by themselves */
         .name = "indicator",
-        .summary = "weighing indicators that print `ST,GS,+  4.876kg` by themselves",
         .line = "9600,8n1",
     },
     {
+        /* Dini Argeo indicators, polled */
         .name = "dini-argeo",
-        .summary = "Dini Argeo indicators, polled",
         .line = "9600,8n1",
         .terminator = "crlf",
         .request = "READ\r\n",
@@ -193,8 +193,8 @@ static const struct wb_loadcell_preset presets[] = {
             },
     },
     {
+        /* Mantracourt DSC and DCell, ASCII, station 1, polled */
         .name = "mantracourt",
-        .summary = "Mantracourt DSC and DCell, ASCII, station 1, polled",
         .terminator = "cr",
         .unit_rule = WB_UNIT_OF_RIG_FILE,
         .request = "!001:SYS?\r",
