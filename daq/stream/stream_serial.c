@@ -231,8 +231,9 @@ static enum wb_status serial_open(void *state, const char *rest, struct wb_reaso
     return prepare(serial, why);
 }
 
-static void close_port(struct serial_state *serial)
+static void serial_close(void *state)
 {
+    struct serial_state *serial = state;
     if (!serial->port)
         return;
     ioctl(serial->device.descriptor, TIOCNXCL);
@@ -267,17 +268,12 @@ static bool serial_reopen(void *state)
     struct serial_state *serial = state;
     char name[sizeof serial->identity.port];
     int error;
-    close_port(serial);
+    serial_close(serial);
     if (!find_again(&serial->identity, name, sizeof name) ||
         open_port(name, &serial->port, &error) != SP_OK || prepare(serial, NULL) != WB_OK)
         return false;
     identify(serial->port, &serial->identity);
     return true;
-}
-
-static void serial_close(void *state)
-{
-    close_port(state);
 }
 
 static const char *serial_caution(const void *state)
