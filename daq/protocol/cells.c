@@ -1,5 +1,6 @@
 #include "daq/protocol/cells.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -165,6 +166,15 @@ bool wb_cells_equal(struct wb_span cell, const char *word)
 bool wb_cells_begins(struct wb_span cell, const char *word)
 {
     return cell.n >= strlen(word) && strncasecmp(cell.text, word, strlen(word)) == 0;
+}
+
+struct wb_span wb_cells_strip(struct wb_span text)
+{
+    while (text.n > 0 && (isspace((unsigned char)text.text[text.n - 1]) || !text.text[text.n - 1]))
+        text.n--;
+    for (; text.n > 0 && isspace((unsigned char)*text.text); text.n--)
+        text.text++;
+    return text;
 }
 
 bool wb_cells_lists(const char *words, const char *word)

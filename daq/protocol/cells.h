@@ -46,6 +46,9 @@ bool wb_cells_blank(struct wb_span line, char delimiter);
 bool wb_cells_equal(struct wb_span cell, const char *word);
 bool wb_cells_begins(struct wb_span cell, const char *word);
 
+/* A text without the white space around it; at its end, NULs are white space too. */
+struct wb_span wb_cells_strip(struct wb_span text);
+
 /* Whether a word is one of `words`, which blanks separate. */
 bool wb_cells_lists(const char *words, const char *word);
 

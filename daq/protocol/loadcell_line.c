@@ -373,18 +373,13 @@ static bool select_column(char **text, const struct wb_rig_load_cell *cell)
  * that are not text, or is too long. */
 static bool clean(const char *bytes, size_t length, char text[MAX_LINE])
 {
+    const struct wb_span line = wb_cells_strip((struct wb_span){bytes, length});
     size_t n = 0;
-    while (length > 0 && (isspace((unsigned char)bytes[length - 1]) || bytes[length - 1] == '\0'))
-        length--;
-    while (length > 0 && isspace((unsigned char)*bytes)) {
-        bytes++;
-        length--;
-    }
-    for (size_t i = 0; i < length; i++) {
-        const unsigned char c = (unsigned char)bytes[i];
+    for (size_t i = 0; i < line.n; i++) {
+        const unsigned char c = (unsigned char)line.text[i];
         if (n + 1 >= MAX_LINE)
             return false;
-        if (c == 0xC2 && i + 1 < length && (unsigned char)bytes[i + 1] == 0xB5)
+        if (c == 0xC2 && i + 1 < line.n && (unsigned char)line.text[i + 1] == 0xB5)
             continue; /* first byte of the micro sign in UTF-8 */
         if (c == 0xB5)
             text[n++] = 'u';

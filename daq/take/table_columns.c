@@ -89,14 +89,9 @@ struct header {
 
 static void copy_unit(struct header *header, const char *from, size_t n)
 {
+    const struct wb_span unit = wb_cells_strip((struct wb_span){from, n});
     char text[32];
-    while (n > 0 && isspace((unsigned char)*from)) {
-        from++;
-        n--;
-    }
-    while (n > 0 && isspace((unsigned char)from[n - 1]))
-        n--;
-    snprintf(text, sizeof text, "%.*s", (int)(n < 31 ? n : 31), from);
+    snprintf(text, sizeof text, "%.*s", (int)(unit.n < 31 ? unit.n : 31), unit.text);
     plain_unit(header->unit, text);
 }
 

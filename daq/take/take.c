@@ -67,11 +67,7 @@ size_t wb_take_frame_at(const struct wb_take *take, size_t frame, struct wb_moca
 
 void wb_take_copy_name(char *to, size_t size, struct wb_span name)
 {
-    while (name.n > 0 &&
-           (isspace((unsigned char)name.text[name.n - 1]) || name.text[name.n - 1] == '\0'))
-        name.n--;
-    for (; name.n > 0 && isspace((unsigned char)*name.text); name.n--)
-        name.text++;
+    name = wb_cells_strip(name);
     const size_t n = name.n < size ? name.n : size - 1;
     for (size_t i = 0; i < n; i++)
         to[i] = name.text[i] >= ' ' && name.text[i] <= '~' ? name.text[i] : '?';
