@@ -97,23 +97,20 @@ static void collect(struct view *view, const struct wb_mocap_frame *frame,
 /* Chooses a scale at which the canvas shows all points and the length of the specimen. */
 static void choose_scale(struct view *view, double length)
 {
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    double low[2] = {0.0, 0.0}, high[2] = {0.0, 0.0};
     for (int i = 0; i < view->n; i++) {
         const double at[2] = {view->points[i].along, view->points[i].up};
         for (int k = 0; k < 2; k++) {
-            low[k] = fmin(low[k], at[k]);
-            high[k] = fmax(high[k], at[k]);
+            low[k] = i > 0 ? fmin(low[k], at[k]) : at[k];
+            high[k] = i > 0 ? fmax(high[k], at[k]) : at[k];
         }
     }
-    const double wide = view->n > 0 ? high[0] - low[0] : 0.0;
-    const double tall = view->n > 0 ? high[1] - low[1] : 0.0;
-    const double across = (COLUMNS - 2 * LEAST_MARGIN - 1);
-    view->scale = fmax(fmax(wide, length) / across, tall / (CELL_RATIO * (ROWS - 1)));
+    const double across = (COLUMNS - 2 * LEAST_MARGIN - 1), height = CELL_RATIO * (ROWS - 1);
+    view->scale = fmax(fmax(high[0] - low[0], length) / across, (high[1] - low[1]) / height);
     if (!(view->scale > 0.0))
         view->scale = 1.0 * WB_MM;
-    view->left = (view->n > 0 ? low[0] : 0.0) - LEAST_MARGIN * view->scale;
-    view->bottom = (view->n > 0 ? 0.5 * (low[1] + high[1]) : 0.0) -
-                   0.5 * (ROWS - 1) * CELL_RATIO * view->scale;
+    view->left = low[0] - LEAST_MARGIN * view->scale;
+    view->bottom = 0.5 * (low[1] + high[1]) - 0.5 * (ROWS - 1) * CELL_RATIO * view->scale;
 }
 
 static int column(const struct view *view, double at)
