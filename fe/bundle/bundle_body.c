@@ -28,13 +28,6 @@ size_t wb_bundle_body_force_size(const struct wb_bundle_body *body)
     return body->is_double ? sizeof(double) : sizeof(float);
 }
 
-static void release_body(struct wb_bundle_body *body)
-{
-    free(body->position);
-    free(body->velocity);
-    free(body->force);
-}
-
 static void visit_body(struct wb_bundle_body *body, struct wb_checkpoint *checkpoint)
 {
     const size_t n = wb_swept_size(&body->layout);
@@ -54,10 +47,11 @@ static enum wb_swept_hex_formulation formulation_of(const struct wb_bundle_mesh 
 
 /* Masses use the wire's own area: that of the section's mesh differs, because its second moment is
  * fitted. */
-static void share_mass(struct wb_bundle_type *type, const struct wb_wire *wire)
+static void share_mass(struct wb_memory *memory, struct wb_bundle_type *type,
+                       const struct wb_wire *wire)
 {
     const double mass = wb_wire_mass_per_length(wire);
-    type->node_mass = wb_memory_new((size_t)type->section.n_nodes, sizeof *type->node_mass);
+    type->node_mass = wb_memory_take(memory, (size_t)type->section.n_nodes, sizeof(double));
     for (int k = 0; k < type->section.n_nodes; k++)
         type->node_mass[k] = mass * type->section.share[k];
 }
@@ -98,21 +92,21 @@ static enum wb_status make_type(struct wb_bundle_bodies *bodies, int t)
         .double_precision = bodies->model->run.double_precision,
     };
     WB_TRY(wb_swept_hex_create(&type->hex, &model));
-    share_mass(type, wire);
+    share_mass(&bodies->memory, type, wire);
     return wb_bundle_bodies_create_step(bodies, wb_swept_hex_layout(type->hex), type->node_mass,
                                         bodies->gravity, &type->step);
 }
 
-void wb_bundle_bodies_create_fields(const struct wb_bundle_bodies *bodies,
-                                    struct wb_bundle_body *body, struct wb_swept_layout layout)
+void wb_bundle_bodies_create_fields(struct wb_bundle_bodies *bodies, struct wb_bundle_body *body,
+                                    struct wb_swept_layout layout)
 {
     const size_t n = wb_swept_size(&layout);
 
     body->layout = layout;
     body->is_double = bodies->model->run.double_precision;
-    body->position = wb_swept_allocate(n, sizeof *body->position);
-    body->velocity = wb_swept_allocate(n, sizeof *body->velocity);
-    body->force = wb_swept_allocate(n, wb_bundle_body_force_size(body));
+    body->position = wb_swept_take(&bodies->memory, n, sizeof *body->position);
+    body->velocity = wb_swept_take(&bodies->memory, n, sizeof *body->velocity);
+    body->force = wb_swept_take(&bodies->memory, n, wb_bundle_body_force_size(body));
 }
 
 /* A straight body: positions of the section points at all stations, including padding. */
@@ -186,24 +180,18 @@ enum wb_status wb_bundle_bodies_init(struct wb_bundle_bodies *bodies,
 
 void wb_bundle_bodies_release(struct wb_bundle_bodies *bodies)
 {
-    for (int w = 0; w < bodies->n_wires; w++) {
+    for (int w = 0; w < bodies->n_wires; w++)
         wb_swept_hex_state_destroy(bodies->wire_state[w]);
-        release_body(&bodies->wire[w]);
-    }
     for (int t = 0; t < WB_BUNDLE_MODEL_TYPES; t++) {
         wb_swept_step_destroy(bodies->type[t].step);
         wb_swept_hex_destroy(bodies->type[t].hex);
-        free(bodies->type[t].node_mass);
         wb_swept_section_release(&bodies->type[t].section);
     }
     wb_swept_tape_state_destroy(bodies->tape_state);
     wb_swept_tape_destroy(bodies->tape);
-    wb_swept_step_destroy(bodies->tape_step);
-    wb_swept_step_destroy(bodies->director_step);
-    free(bodies->tape_mass);
-    free(bodies->tape_inertia);
-    release_body(&bodies->ring);
-    release_body(&bodies->directors);
+    wb_swept_step_destroy(bodies->ring.step);
+    wb_swept_step_destroy(bodies->directors.step);
+    wb_memory_release(&bodies->memory);
     *bodies = (struct wb_bundle_bodies){0};
 }
 
@@ -213,8 +201,8 @@ void wb_bundle_bodies_hold(const struct wb_bundle_bodies *bodies, int station)
         for (int t = 0; t < bodies->model->n_types; t++)
             wb_swept_step_hold(bodies->type[t].step, station, c, true);
         if (bodies->has_tape) {
-            wb_swept_step_hold(bodies->tape_step, station, c, true);
-            wb_swept_step_hold(bodies->director_step, station, c, true);
+            wb_swept_step_hold(bodies->ring.step, station, c, true);
+            wb_swept_step_hold(bodies->directors.step, station, c, true);
         }
     }
 }

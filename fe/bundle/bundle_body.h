@@ -11,6 +11,7 @@
 #include <stddef.h>
 
 #include "base/checkpoint.h"
+#include "base/memory.h"
 #include "base/status.h"
 #include "fe/model/bundle_model.h"
 #include "fe/swept/swept_hex.h"
@@ -25,13 +26,13 @@ enum {
 
 struct wb_bundle_body {
     struct wb_swept_layout layout;
-    double *position, *velocity; /* owned, like the force */
-    void *force;                 /* float; double in a run with double precision */
+    double *position, *velocity;
+    void *force; /* float; double in a run with double precision */
     bool is_double;
-    const struct wb_swept_step *step; /* owned elsewhere */
-    const double *node_mass;          /* (n_nodes) kg/m, unscaled; owned elsewhere */
-    double mass;                      /* kg/m, unscaled */
-    double start;                     /* m: mean height of the section, by unscaled masses */
+    struct wb_swept_step *step;
+    const double *node_mass; /* (n_nodes) kg/m, of directors kg m; unscaled */
+    double mass;             /* kg/m, unscaled; 0 for directors */
+    double start;            /* m: mean height of the section, by unscaled masses */
 };
 
 /* The force at an index of the field, N; the size of one force in bytes. */
@@ -46,7 +47,7 @@ struct wb_bundle_type {
     struct wb_swept_section section;
     struct wb_swept_hex *hex;
     struct wb_swept_step *step;
-    double *node_mass; /* (n_nodes) kg/m */
+    double *node_mass; /* (n_nodes) kg/m, owned by the bodies */
 };
 
 /* The stations that the bodies have, out of those of the complete bundle. */
@@ -77,9 +78,8 @@ struct wb_bundle_bodies {
     bool has_tape;
     struct wb_swept_tape *tape;
     struct wb_swept_tape_state *tape_state; /* of its material */
-    struct wb_swept_step *tape_step, *director_step;
-    double *tape_mass, *tape_inertia; /* (ring nodes) kg/m, kg m */
     struct wb_bundle_body ring, directors;
+    struct wb_memory memory; /* of all fields and masses */
 };
 
 /* Creates the wires, straight and at rest; wb_bundle_tape_create() adds the tape. Release the
@@ -91,10 +91,10 @@ WB_MUST_CHECK enum wb_status wb_bundle_bodies_init(struct wb_bundle_bodies *bodi
 /* Frees wires and tape; accepts zeroed bodies. */
 void wb_bundle_bodies_release(struct wb_bundle_bodies *bodies);
 
-/* Creates zeroed fields for another body; creates the integrator of a body, which the caller
- * destroys. */
-void wb_bundle_bodies_create_fields(const struct wb_bundle_bodies *bodies,
-                                    struct wb_bundle_body *body, struct wb_swept_layout layout);
+/* Creates zeroed fields for another body, owned by the bodies; creates the integrator of a body,
+ * which the caller destroys. */
+void wb_bundle_bodies_create_fields(struct wb_bundle_bodies *bodies, struct wb_bundle_body *body,
+                                    struct wb_swept_layout layout);
 WB_MUST_CHECK enum wb_status wb_bundle_bodies_create_step(const struct wb_bundle_bodies *bodies,
                                                           struct wb_swept_layout layout,
                                                           const double *node_mass, double gravity,

@@ -19,7 +19,6 @@ struct wb_bundle_bond {
     struct wb_swept_cohesion *cohesion;
     struct wb_swept_cohesion *windings; /* between windings of a helix; NULL for a sleeve */
     struct wb_swept_tape_contact *contact;
-    double *ring_mass, *ring_inertia; /* (ring nodes) kg, kg m2: at an inner station, scaled */
 };
 
 /* The wire or lower winding that carries most of a ring node's tape, and the fraction it carries.
@@ -123,20 +122,6 @@ static enum wb_status make_contact(struct wb_bundle_bond *bond,
                                         bodies->n_wires, wires);
 }
 
-static void scale_masses(struct wb_bundle_bond *bond)
-{
-    const struct wb_bundle_bodies *bodies = bond->bodies;
-    const size_t n = (size_t)bodies->ring.layout.n_nodes;
-    const double scale = bodies->spacing * bodies->model->run.mass_scaling;
-
-    bond->ring_mass = wb_memory_new(n, sizeof *bond->ring_mass);
-    bond->ring_inertia = wb_memory_new(n, sizeof *bond->ring_inertia);
-    for (size_t k = 0; k < n; k++) {
-        bond->ring_mass[k] = bodies->tape_mass[k] * scale;
-        bond->ring_inertia[k] = bodies->tape_inertia[k] * scale;
-    }
-}
-
 enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out, struct wb_bundle_bodies *bodies,
                                      struct wb_reason *reason)
 {
@@ -155,7 +140,6 @@ enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out, struct wb_bund
         wb_bundle_bond_destroy(bond);
         return status;
     }
-    scale_masses(bond);
     *out = bond;
     return WB_OK;
 }
@@ -167,8 +151,6 @@ void wb_bundle_bond_destroy(struct wb_bundle_bond *bond)
     wb_swept_tape_contact_destroy(bond->contact);
     wb_swept_cohesion_destroy(bond->cohesion);
     wb_swept_cohesion_destroy(bond->windings);
-    free(bond->ring_mass);
-    free(bond->ring_inertia);
     free(bond);
 }
 
@@ -237,11 +219,19 @@ double wb_bundle_bond_wire_stiffness(const struct wb_bundle_bond *bond, int wire
 
 double wb_bundle_bond_ring_stiffness(const struct wb_bundle_bond *bond)
 {
-    const double *mass = bond->ring_mass, *inertia = bond->ring_inertia;
-    const double windings =
-        bond->windings ? wb_swept_cohesion_tape_stiffness_per_mass(bond->windings, mass, inertia)
-                       : 0.0;
+    const struct wb_bundle_bodies *bodies = bond->bodies;
+    const int n = bodies->ring.layout.n_nodes;
+    const double scale = bodies->spacing * bodies->model->run.mass_scaling;
+    double *const mass = wb_memory_new(2 * (size_t)n, sizeof *mass), *const inertia = mass + n;
 
-    return wb_swept_cohesion_tape_stiffness_per_mass(bond->cohesion, mass, inertia) + windings +
-           wb_swept_tape_contact_stiffness_per_mass(bond->contact, mass, inertia);
+    for (int k = 0; k < n; k++) {
+        mass[k] = bodies->ring.node_mass[k] * scale;
+        inertia[k] = bodies->directors.node_mass[k] * scale;
+    }
+    double sum = wb_swept_cohesion_tape_stiffness_per_mass(bond->cohesion, mass, inertia);
+    if (bond->windings)
+        sum += wb_swept_cohesion_tape_stiffness_per_mass(bond->windings, mass, inertia);
+    sum += wb_swept_tape_contact_stiffness_per_mass(bond->contact, mass, inertia);
+    free(mass);
+    return sum;
 }

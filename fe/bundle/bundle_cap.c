@@ -13,9 +13,8 @@ enum {
 /* A body's nodes at the last station. */
 struct part {
     const struct wb_bundle_body *body;
-    const double *node_mass; /* (n_nodes) kg/m, or kg m for directors */
-    bool turns_only;         /* directors only rotate */
-    double (*arm)[3];        /* (n_nodes) m: from the centre of the straight bundle */
+    bool turns_only;  /* directors only rotate */
+    double (*arm)[3]; /* (n_nodes) m: from the centre of the straight bundle */
 };
 
 /* The state of the cap. */
@@ -257,32 +256,21 @@ void wb_bundle_cap_stop(struct wb_bundle_cap *cap)
 
 void wb_bundle_cap_visit(struct wb_bundle_cap *cap, struct wb_checkpoint *c)
 {
-    struct motion *motion = &cap->motion;
-
     wb_checkpoint_enter(c, "cap");
-    wb_checkpoint_visit_member(c, motion, centre);
-    wb_checkpoint_visit_member(c, motion, velocity);
-    wb_checkpoint_visit_member(c, motion, turned);
-    wb_checkpoint_visit_member(c, motion, turn);
-    wb_checkpoint_visit_member(c, motion, kinetic);
+    wb_checkpoint_visit_member(c, cap, motion);
     wb_checkpoint_leave(c);
 }
 
 /* --- creation --- */
 
-static void list_parts(struct wb_bundle_cap *cap)
+static void list_parts(struct wb_bundle_cap *cap, struct wb_bundle_bodies *bodies)
 {
-    const struct wb_bundle_bodies *bodies = cap->bodies;
+    struct wb_bundle_body *body[WB_BUNDLE_MOST_BODIES];
 
-    for (int w = 0; w < bodies->n_wires; w++)
-        cap->part[cap->n_parts++] =
-            (struct part){.body = &bodies->wire[w], .node_mass = bodies->wire[w].node_mass};
-    if (!bodies->has_tape)
-        return;
-    cap->part[cap->n_parts++] =
-        (struct part){.body = &bodies->ring, .node_mass = bodies->ring.node_mass};
-    cap->part[cap->n_parts++] = (struct part){
-        .body = &bodies->directors, .node_mass = bodies->tape_inertia, .turns_only = true};
+    cap->bodies = bodies;
+    cap->n_parts = wb_bundle_bodies_list(bodies, body);
+    for (int p = 0; p < cap->n_parts; p++)
+        cap->part[p] = (struct part){body[p], .turns_only = body[p] == &bodies->directors};
 }
 
 static void find_arms(struct wb_bundle_cap *cap, double length)
@@ -290,10 +278,10 @@ static void find_arms(struct wb_bundle_cap *cap, double length)
     for (int p = 0; p < cap->n_parts; p++) {
         struct part *part = &cap->part[p];
         for (int k = 0; k < part->body->layout.n_nodes && !part->turns_only; k++) {
-            cap->mass += part->node_mass[k] * length;
+            const double mass = part->body->node_mass[k] * length;
+            cap->mass += mass;
             for (int c = 0; c < 3; c++)
-                cap->motion.centre[c] +=
-                    part->node_mass[k] * length * part->body->position[end_of(part, k, c)];
+                cap->motion.centre[c] += mass * part->body->position[end_of(part, k, c)];
         }
     }
     for (int c = 0; c < 3; c++)
@@ -318,7 +306,7 @@ static void find_moment(struct wb_bundle_cap *cap, double length)
         const struct part *part = &cap->part[p];
         double mass = 0.0, first[3] = {0.0};
         for (int k = 0; k < part->body->layout.n_nodes; k++) {
-            const double m = part->node_mass[k] * length;
+            const double m = part->body->node_mass[k] * length;
             mass += m;
             for (int i = 0; i < 3; i++) {
                 first[i] += m * part->arm[k][i];
@@ -332,13 +320,12 @@ static void find_moment(struct wb_bundle_cap *cap, double length)
     }
 }
 
-struct wb_bundle_cap *wb_bundle_cap_create(const struct wb_bundle_bodies *bodies)
+struct wb_bundle_cap *wb_bundle_cap_create(struct wb_bundle_bodies *bodies)
 {
     const double length = 0.5 * bodies->spacing * bodies->model->run.mass_scaling;
     struct wb_bundle_cap *const cap = wb_memory_new(1, sizeof *cap);
-    cap->bodies = bodies;
     cap->motion.turned[0] = 1.0;
-    list_parts(cap);
+    list_parts(cap, bodies);
     find_arms(cap, length);
     find_moment(cap, length);
     wb_bundle_bodies_hold(bodies, bodies->extent.n_stations - 1);

@@ -23,7 +23,7 @@ struct wb_bundle_cap; /* opaque */
 
 /* Creates the cap of straight bodies, wires and tape, and fixes their last station. The bodies must
  * outlive it. */
-struct wb_bundle_cap *wb_bundle_cap_create(const struct wb_bundle_bodies *bodies);
+struct wb_bundle_cap *wb_bundle_cap_create(struct wb_bundle_bodies *bodies);
 void wb_bundle_cap_destroy(struct wb_bundle_cap *cap); /* accepts NULL */
 
 /* Makes one step of the cap under the forces in the bodies' fields, and sets the velocities of the

@@ -91,22 +91,15 @@ static void place_ring(struct wb_bundle_bodies *bodies)
 
 /* --- creation --- */
 
-/* Number of elements along the bundle for which the mass of the strip's facets, which cut the
- * outline's corners, is accurate enough. */
-static int elements_needed(const struct wb_bundle_bodies *bodies, double lacking)
-{
-    return (int)ceil(1.05 * bodies->mesh->elements_along *
-                     pow(lacking / max_missing_mass, 1.0 / mass_order));
-}
-
-static enum wb_status reject_mesh(const struct wb_bundle_bodies *bodies, int needed)
+/* `needed`: elements along the bundle. */
+static enum wb_status reject_mesh(const struct wb_bundle_bodies *bodies, double needed)
 {
     return wb_fail(
         WB_ERR_ARGUMENT,
         "%s: mesh '%s' with %d elements along is too coarse for a helix with a lead of %.3g "
         "mm per turn: use a mesh with elements_along: %d or more",
         bodies->model->path, bodies->mesh->name, bodies->mesh->elements_along,
-        bodies->model->tape.taping.advance / WB_MM, needed);
+        bodies->model->tape.taping.advance / WB_MM, (int)ceil(needed));
 }
 
 /* Checked before the tape is created: elements with more rotation are not convex. */
@@ -116,9 +109,10 @@ static enum wb_status check_twist(const struct wb_bundle_bodies *bodies)
 
     if (turned <= max_turned)
         return WB_OK;
-    return reject_mesh(bodies, (int)ceil(bodies->mesh->elements_along * turned / usual_turned));
+    return reject_mesh(bodies, bodies->mesh->elements_along * turned / usual_turned);
 }
 
+/* The strip's facets cut the outline's corners. */
 static enum wb_status check_mass(const struct wb_bundle_bodies *bodies)
 {
     const double whole = wb_bundle_model_tape_mass(bodies->model);
@@ -126,7 +120,8 @@ static enum wb_status check_mass(const struct wb_bundle_bodies *bodies)
 
     if (lacking <= max_missing_mass)
         return WB_OK;
-    return reject_mesh(bodies, elements_needed(bodies, lacking));
+    return reject_mesh(bodies, 1.05 * bodies->mesh->elements_along *
+                                   pow(lacking / max_missing_mass, 1.0 / mass_order));
 }
 
 static enum wb_status make_ring(struct wb_bundle_bodies *bodies)
@@ -158,20 +153,16 @@ static enum wb_status make_ring(struct wb_bundle_bodies *bodies)
 static enum wb_status make_steps(struct wb_bundle_bodies *bodies,
                                  const struct wb_bundle_bodies *whole)
 {
-    const struct wb_swept_layout layout = bodies->ring.layout;
-    const size_t n = (size_t)layout.n_nodes;
+    struct wb_bundle_body *ring = &bodies->ring, *directors = &bodies->directors;
+    const size_t n = (size_t)ring->layout.n_nodes;
+    double *const mass = wb_memory_take(&bodies->memory, n, sizeof *mass);
+    double *const inertia = wb_memory_take(&bodies->memory, n, sizeof *inertia);
 
-    bodies->tape_mass = wb_memory_new(n, sizeof *bodies->tape_mass);
-    bodies->tape_inertia = wb_memory_new(n, sizeof *bodies->tape_inertia);
-    wb_swept_tape_masses(bodies->tape, bodies->tape_mass, bodies->tape_inertia);
-    if (whole) {
-        memcpy(bodies->tape_mass, whole->tape_mass, n * sizeof *bodies->tape_mass);
-        memcpy(bodies->tape_inertia, whole->tape_inertia, n * sizeof *bodies->tape_inertia);
-    }
-    WB_TRY(wb_bundle_bodies_create_step(bodies, layout, bodies->tape_mass, bodies->gravity,
-                                        &bodies->tape_step));
-    return wb_bundle_bodies_create_step(bodies, layout, bodies->tape_inertia, 0.0,
-                                        &bodies->director_step);
+    wb_swept_tape_masses(whole ? whole->tape : bodies->tape, mass, inertia);
+    ring->node_mass = mass;
+    directors->node_mass = inertia;
+    WB_TRY(wb_bundle_bodies_create_step(bodies, ring->layout, mass, bodies->gravity, &ring->step));
+    return wb_bundle_bodies_create_step(bodies, directors->layout, inertia, 0.0, &directors->step);
 }
 
 enum wb_status wb_bundle_tape_create(struct wb_bundle_bodies *bodies,
@@ -187,14 +178,11 @@ enum wb_status wb_bundle_tape_create(struct wb_bundle_bodies *bodies,
     memcpy(directors->position, wb_swept_tape_directors(bodies->tape),
            wb_swept_size(&directors->layout) * sizeof *directors->position);
     WB_TRY(make_steps(bodies, whole));
-    ring->step = bodies->tape_step;
-    ring->node_mass = bodies->tape_mass;
-    directors->step = bodies->director_step;
     for (int k = 0; k < ring->layout.n_nodes; k++) {
         const size_t tip = (size_t)(3 * k + 1) * (size_t)ring->layout.stride +
                            (size_t)bodies->extent.n_stations - 1;
-        ring->mass += bodies->tape_mass[k];
-        ring->start += bodies->tape_mass[k] * ring->position[tip];
+        ring->mass += ring->node_mass[k];
+        ring->start += ring->node_mass[k] * ring->position[tip];
     }
     ring->start /= ring->mass;
     return is_helix ? check_mass(bodies) : WB_OK;
