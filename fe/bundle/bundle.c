@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "fe/bundle/bundle_part.h"
 #include "fe/bundle/bundle_parts.h"
-#include "fe/bundle/bundle_private.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -172,9 +171,7 @@ enum wb_status wb_bundle_settle(struct wb_bundle *bundle, const struct wb_bundle
     struct wb_bundle_part *whole = bundle->whole;
     struct wb_bundle_energies now;
 
-    whole->tip_path.from = whole->tip_path.to = 0.0;
-    whole->tip_path.start = 0.0;
-    whole->tip_path.duration = 1.0;
+    whole->tip_path = (struct wb_bundle_tip_path){.duration = 1.0};
     bundle->weight_zero = wb_bundle_parts_potential(bundle->parts);
     if (whole->bodies.gravity == 0.0)
         return WB_OK;
@@ -184,7 +181,6 @@ enum wb_status wb_bundle_settle(struct wb_bundle *bundle, const struct wb_bundle
     whole->account.tip_work +=
         now.kinetic + wb_bundle_internal(&now) + now.artificial + now.friction - now.external;
     whole->clock.time = 0.0;
-    whole->tip_path.start = 0.0;
     return WB_OK;
 }
 
@@ -237,40 +233,6 @@ void wb_bundle_get_energies(const struct wb_bundle *bundle, struct wb_bundle_ene
         .external =
             account->tip_work + bundle->weight_zero - wb_bundle_parts_potential(bundle->parts),
     };
-}
-
-/* Adds a body's part. */
-static void add_outside(const struct wb_bundle_bodies *bodies, const struct wb_bundle_body *body,
-                        struct wb_bundle_outside *out)
-{
-    const int held = wb_bundle_bodies_last_held(bodies), stride = body->layout.stride;
-
-    for (int j = 0; j < bodies->extent.n_stations; j++) {
-        const double mass = wb_bundle_bodies_station_mass(bodies, body, j);
-        const double weight = -bodies->gravity * mass / bodies->model->run.mass_scaling;
-        out->weight[1] += weight;
-        if (j <= held)
-            out->clamp[1] -= weight;
-        for (int i = 0; i < 3 * body->layout.n_nodes; i++) {
-            const size_t at = (size_t)i * (size_t)stride + (size_t)j;
-            if (j <= held)
-                out->clamp[i % 3] -= wb_bundle_body_force(body, at);
-            out->momentum[i % 3] += mass * body->node_mass[i / 3] / body->mass * body->velocity[at];
-        }
-    }
-}
-
-void wb_bundle_get_outside(const struct wb_bundle *bundle, struct wb_bundle_outside *outside)
-{
-    const struct wb_bundle_part *whole = wb_bundle_whole(bundle);
-    const struct wb_bundle_bodies *bodies = &whole->bodies;
-    const double *pull = whole->account.pull;
-
-    *outside = (struct wb_bundle_outside){.tip = {pull[0], pull[1], pull[2]}};
-    for (int w = 0; w < bodies->n_wires; w++)
-        add_outside(bodies, &bodies->wire[w], outside);
-    if (bodies->has_tape)
-        add_outside(bodies, &bodies->ring, outside);
 }
 
 void wb_bundle_shape(const struct wb_bundle *bundle, int n, const double *s, double (*shape)[3])

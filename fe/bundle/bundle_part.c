@@ -482,28 +482,7 @@ void wb_bundle_part_visit_fields(struct wb_bundle_part *part, struct wb_checkpoi
 
 void wb_bundle_part_visit_progress(struct wb_bundle_part *part, struct wb_checkpoint *c)
 {
-    struct wb_bundle_tip_path *tip_path = &part->tip_path;
-    struct wb_bundle_clock *clock = &part->clock;
-    struct wb_bundle_account *account = &part->account;
-
-    wb_checkpoint_visit_member(c, tip_path, from);
-    wb_checkpoint_visit_member(c, tip_path, to);
-    wb_checkpoint_visit_member(c, tip_path, start);
-    wb_checkpoint_visit_member(c, tip_path, duration);
-    wb_checkpoint_visit_member(c, tip_path, tip_is_free);
-    wb_checkpoint_visit_member(c, clock, time);
-    wb_checkpoint_visit_member(c, clock, steps);
-    wb_checkpoint_visit_member(c, clock, has_moved);
-    wb_checkpoint_visit_member(c, account, tension);
-    wb_checkpoint_visit_member(c, account, vertical);
-    wb_checkpoint_visit_member(c, account, pull);
-    wb_checkpoint_visit_member(c, account, slack);
-    wb_checkpoint_visit_member(c, account, tip_work);
-    wb_checkpoint_visit_member(c, account, friction_work);
-    wb_checkpoint_visit_member(c, account, damage_work);
-    wb_checkpoint_visit_member(c, account, kinetic);
-    wb_checkpoint_visit_member(c, account, touching);
-    wb_checkpoint_visit_member(c, account, wires);
-    wb_checkpoint_visit_member(c, account, shells);
-    wb_checkpoint_visit_member(c, account, bonded);
+    wb_checkpoint_visit_member(c, part, tip_path);
+    wb_checkpoint_visit_member(c, part, clock);
+    wb_checkpoint_visit_member(c, part, account);
 }

@@ -355,30 +355,11 @@ static bool damping_should_continue(void *context)
     return wanted;
 }
 
-enum motion {
-    STEPPING,
-    SETTLING,
-    RELEASING
-};
-
-static enum verdict move(struct run *r, enum motion motion, int n)
+/* The verdict after a motion of the bundle that ended with `status`. */
+static enum verdict judge_motion(struct run *r, enum wb_status status)
 {
-    const struct wb_bundle_watch watch = {damping_should_continue, r};
-    struct wb_reason *const reason = &r->result->reason;
-
-    *reason = (struct wb_reason){0};
-    switch (motion) {
-    case STEPPING:
-        r->status = wb_bundle_advance(r->bundle, n, reason);
-        break;
-    case SETTLING:
-        r->status = wb_bundle_settle(r->bundle, &watch, reason);
-        break;
-    case RELEASING:
-        r->status = wb_bundle_release_tip(r->bundle, &watch, reason);
-        break;
-    }
-    if (r->status != WB_OK)
+    r->status = status;
+    if (status != WB_OK)
         return handle_failure(r);
     wb_bundle_get_state(r->bundle, &r->state);
     return r->result->stopped ? DONE : CONTINUE;
@@ -386,7 +367,7 @@ static enum verdict move(struct run *r, enum motion motion, int n)
 
 static enum verdict advance(struct run *r, int n)
 {
-    return move(r, STEPPING, n);
+    return judge_motion(r, wb_bundle_advance(r->bundle, n, &r->result->reason));
 }
 
 /* --- energies --- */
@@ -630,7 +611,8 @@ static enum verdict advance_to(struct run *r, double place, bool look_there)
         sample(r);
         r->left -= n;
         if (went_slack(r)) {
-            verdict = move(r, RELEASING, 0);
+            const struct wb_bundle_watch watch = {damping_should_continue, r};
+            verdict = judge_motion(r, wb_bundle_release_tip(r->bundle, &watch, &r->result->reason));
             if (verdict != CONTINUE)
                 return verdict;
             r->tip_released = true;
@@ -726,7 +708,8 @@ static enum verdict run_branch(struct run *r)
 /* Row 0: at rest, with the weight applied. The strand is taut and carries part of it. */
 static enum verdict settle(struct run *r)
 {
-    enum verdict verdict = move(r, SETTLING, 0);
+    const struct wb_bundle_watch watch = {damping_should_continue, r};
+    enum verdict verdict = judge_motion(r, wb_bundle_settle(r->bundle, &watch, &r->result->reason));
 
     if (verdict != CONTINUE)
         return verdict;

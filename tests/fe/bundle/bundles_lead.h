@@ -2,8 +2,8 @@
 #ifndef WB_TESTS_FE_BUNDLE_BUNDLES_LEAD_H
 #define WB_TESTS_FE_BUNDLE_BUNDLES_LEAD_H
 
-#include "fe/bundle/bundle_private.h"
 #include "tests/fe/bundle/bundles.h"
+#include "tests/fe/bundle/outside.h"
 
 /* Moves the tip to a deflection. Energies balance to the given fraction of the largest work,
  * momentum to single precision. */
@@ -11,7 +11,7 @@ static inline void move_and_check(struct wb_bundle *bundle, double deflection, d
                                   double tolerance)
 {
     const int steps = (int)(duration / wb_bundle_time_step(bundle));
-    struct wb_bundle_outside outside;
+    struct outside outside;
     struct wb_bundle_energies e;
     double impulse[3] = {0.0}, size = 0.0, most = 0.0, worst = 0.0;
 
@@ -19,7 +19,7 @@ static inline void move_and_check(struct wb_bundle *bundle, double deflection, d
     for (int i = 0; i < steps; i++) {
         const double dt = wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
         assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
-        wb_bundle_get_outside(bundle, &outside);
+        get_outside(bundle, &outside);
         for (int c = 0; c < 3; c++) {
             const double force = outside.clamp[c] + outside.tip[c] + outside.weight[c];
             impulse[c] += force * dt;

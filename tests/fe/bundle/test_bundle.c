@@ -1,7 +1,7 @@
 /* Bundles in explicit dynamics, on coarse meshes for speed: comparison with the 1D beam and
  * statics, and conservation laws. */
-#include "fe/bundle/bundle_private.h"
 #include "tests/fe/bundle/bundles.h"
+#include "tests/fe/bundle/outside.h"
 
 /* --- one wire --- */
 
@@ -41,7 +41,7 @@ static void weight_deflects_the_wire_like_a_propped_beam(void **unused)
     const double L = 0.114, w = test_wire_mass(&wire) * WB_STANDARD_GRAVITY;
     const double EI = wire.material.youngs_modulus * M_PI / 64.0 * pow(wire.diameter, 4.0);
     const struct wb_bundle_settings settings = {.duration = 1.0};
-    struct wb_bundle_outside outside;
+    struct outside outside;
     struct wb_bundle_state state;
     struct wb_bundle *bundle;
     double s[19], shape[19][3];
@@ -57,7 +57,7 @@ static void weight_deflects_the_wire_like_a_propped_beam(void **unused)
         const double v = w * x * x * (3.0 * L * L - 5.0 * L * x + 2.0 * x * x) / (48.0 * EI);
         assert_close(shape[i][1], -v, 0.025 * w * pow(L, 4.0) / (185.0 * EI));
     }
-    wb_bundle_get_outside(bundle, &outside);
+    get_outside(bundle, &outside);
     wb_bundle_get_state(bundle, &state);
     assert_close_relative(outside.weight[1], -w * L, 1e-9);
     assert_close_relative(outside.clamp[1], 5.0 / 8.0 * w * L, 0.01);
@@ -73,7 +73,7 @@ static void only_external_forces_change_the_momentum(void **unused)
 {
     (void)unused;
     const struct wb_bundle_settings settings = {.duration = 0.05};
-    struct wb_bundle_outside outside;
+    struct outside outside;
     struct wb_bundle *bundle;
     double impulse[3] = {0.0}, size = 0.0;
 
@@ -84,7 +84,7 @@ static void only_external_forces_change_the_momentum(void **unused)
     for (int i = 0; i < 2000; i++) {
         const double dt = wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
         assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
-        wb_bundle_get_outside(bundle, &outside);
+        get_outside(bundle, &outside);
         for (int c = 0; c < 3; c++) {
             const double force = outside.clamp[c] + outside.tip[c] + outside.weight[c];
             impulse[c] += force * dt;

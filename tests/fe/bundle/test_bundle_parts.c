@@ -11,6 +11,7 @@
 #include "fe/bundle/bundle_parts.h"
 #include "fe/bundle/bundle_private.h"
 #include "fe/team/team.h"
+#include "tests/fe/bundle/outside.h"
 
 enum {
     ROUNDS = 8,
@@ -31,7 +32,7 @@ static const double way = 10e-3, duration = 6e-3;
 struct result {
     struct wb_bundle_state state;
     struct wb_bundle_energies energies;
-    struct wb_bundle_outside outside;
+    struct outside outside;
     struct wb_bundle_limits limits;
     double shape[SHAPE][3];
 };
@@ -44,7 +45,7 @@ static void take(const struct wb_bundle *bundle, struct result *out)
     memset(out, 0, sizeof *out);
     wb_bundle_get_state(bundle, &out->state);
     wb_bundle_get_energies(bundle, &out->energies);
-    wb_bundle_get_outside(bundle, &out->outside);
+    get_outside(bundle, &out->outside);
     wb_bundle_get_limits(bundle, &out->limits);
     wb_bundle_shape(bundle, SHAPE, s, out->shape);
 }
@@ -197,14 +198,14 @@ static void the_same_parts_are_the_same_bit_for_bit(void **unused)
 static void only_external_forces_change_the_momentum(void **unused)
 {
     (void)unused;
-    struct wb_bundle_outside outside;
+    struct outside outside;
     double impulse = 0.0, size = 0.0;
     read_model(FINE);
     struct wb_bundle *bundle = create(3);
     wb_bundle_move_tip(bundle, way, duration);
     for (int i = 0; i < 400; i++) {
         assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
-        wb_bundle_get_outside(bundle, &outside);
+        get_outside(bundle, &outside);
         const double force = outside.clamp[1] + outside.tip[1] + outside.weight[1];
         impulse += force * wb_bundle_time_step(bundle) * (i == 0 ? 0.5 : 1.0);
         size += fabs(force) * wb_bundle_time_step(bundle);

@@ -63,7 +63,7 @@ static void a_helix_conserves_energy_and_momentum(void **unused)
     static const char *const hands[2] = {"left", "right"};
     const struct wb_bundle_settings settings = {.duration = 0.012, .mesh = "four"};
     struct wb_bundle_energies e[2];
-    struct wb_bundle_outside outside;
+    struct outside outside;
     struct wb_bundle *bundle;
 
     for (int i = 0; i < 2; i++) {
@@ -79,7 +79,7 @@ static void a_helix_conserves_energy_and_momentum(void **unused)
         assert_int_equal(wb_bundle_create(&bundle, &model, &settings), WB_OK);
         assert_int_equal(wb_bundle_shells(bundle), 60 * 40);
         assert_int_equal(wb_bundle_advance(bundle, 1, NULL), WB_OK);
-        wb_bundle_get_outside(bundle, &outside);
+        get_outside(bundle, &outside);
         const double mass = wb_bundle_model_wire_mass(&model) + wb_bundle_model_tape_mass(&model);
         const double tape = wb_bundle_model_tape_mass(&model);
         assert_close(outside.weight[1], -WB_STANDARD_GRAVITY * model.length * mass,
