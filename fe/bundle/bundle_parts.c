@@ -1,6 +1,7 @@
 #include "fe/bundle/bundle_parts.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -113,30 +114,48 @@ int wb_bundle_parts_largest(const struct wb_bundle_model *model, const char *nam
     return count == 1 ? mesh->elements_along + 1 : largest;
 }
 
-/* --- one part --- */
+/* --- columns of stations --- */
 
-/* Copies positions of one halo width of stations into a packet, or from it. NULL packet: no
- * neighbour. */
-static void pack(struct wb_bundle_bodies *bodies, int from, int n, double *packet)
+/* Serialised columns of stations, on their way to a neighbour or to the complete bundle. */
+struct column_buffer {
+    unsigned char *bytes; /* NULL: only count the size */
+    size_t size;
+    bool unloads;
+};
+
+static void load_column(struct column_buffer *buffer, void *data, size_t size)
 {
-    struct wb_bundle_body *body[WB_BUNDLE_MOST_BODIES];
-    const int n_bodies = wb_bundle_bodies_list(bodies, body);
-
-    for (int b = 0; packet && b < n_bodies; b++)
-        for (int row = 0; row < 3 * body[b]->layout.n_nodes; row++, packet += n)
-            memcpy(packet, body[b]->position + (ptrdiff_t)row * body[b]->layout.stride + from,
-                   (size_t)n * sizeof *packet);
+    if (buffer->bytes && buffer->unloads)
+        memcpy(data, buffer->bytes + buffer->size, size);
+    else if (buffer->bytes)
+        memcpy(buffer->bytes + buffer->size, data, size);
+    buffer->size += size;
 }
 
-static void unpack(struct wb_bundle_bodies *bodies, int to, int n, const double *packet)
+static void load_field(struct column_buffer *buffer, void *field, size_t size,
+                       const struct wb_swept_layout *layout, struct wb_swept_range range)
+{
+    for (int row = 0; row < 3 * layout->n_nodes; row++) {
+        const size_t at = (size_t)row * (size_t)layout->stride + (size_t)range.first;
+        load_column(buffer, (unsigned char *)field + at * size,
+                    (size_t)(range.end - range.first) * size);
+    }
+}
+
+/* --- one part --- */
+
+/* Copies the positions of `n` stations from `from` on into a packet, or from it. NULL packet: no
+ * neighbour. */
+static void copy_positions(struct wb_bundle_bodies *bodies, int from, int n, void *packet,
+                           bool unloads)
 {
     struct wb_bundle_body *body[WB_BUNDLE_MOST_BODIES];
     const int n_bodies = wb_bundle_bodies_list(bodies, body);
+    struct column_buffer buffer = {.bytes = packet, .unloads = unloads};
 
     for (int b = 0; packet && b < n_bodies; b++)
-        for (int row = 0; row < 3 * body[b]->layout.n_nodes; row++, packet += n)
-            memcpy(body[b]->position + (ptrdiff_t)row * body[b]->layout.stride + to, packet,
-                   (size_t)n * sizeof *packet);
+        load_field(&buffer, body[b]->position, sizeof(double), &body[b]->layout,
+                   (struct wb_swept_range){from, from + n});
 }
 
 /* Number of values in a packet: positions of wires, ring and directors. */
@@ -171,11 +190,12 @@ static void exchange_halos(struct wb_bundle_parts *parts, int number)
 
     if (parts->count == 1)
         return;
-    pack(bodies, own.first, n, wb_team_packet(team, number, WB_TEAM_BEFORE));
-    pack(bodies, own.end - n, n, wb_team_packet(team, number, WB_TEAM_AFTER));
+    copy_positions(bodies, own.first, n, wb_team_packet(team, number, WB_TEAM_BEFORE), false);
+    copy_positions(bodies, own.end - n, n, wb_team_packet(team, number, WB_TEAM_AFTER), false);
     wb_team_post(team, number);
-    unpack(bodies, own.first - n, n, wb_team_await(team, number, WB_TEAM_BEFORE));
-    unpack(bodies, own.end, n, wb_team_await(team, number, WB_TEAM_AFTER));
+    copy_positions(bodies, own.first - n, n, (void *)wb_team_await(team, number, WB_TEAM_BEFORE),
+                   true);
+    copy_positions(bodies, own.end, n, (void *)wb_team_await(team, number, WB_TEAM_AFTER), true);
 }
 
 /* Checks the slip at the borders only, because it varies slowly along wires. */
@@ -219,142 +239,66 @@ static void advance_part(void *context, int number)
 
 /* --- results of all parts --- */
 
-/* Sums of the last step, and the tip's forces, which are zero in all parts but the last. */
+/* Numbers of an account that are summed over the parts: those of the last step, and the tip's
+ * forces, which are zero in all parts but the last. The whole adds the first N_WORKS sums to its
+ * own, because they are works since the beginning. */
+#define AT(member) offsetof(struct wb_bundle_account, member)
+
+static const size_t summed[] = {
+    AT(friction_work),     AT(damage_work),      AT(tip_work),
+    AT(kinetic),           AT(tension),          AT(vertical),
+    AT(pull[0]),           AT(pull[1]),          AT(pull[2]),
+    AT(wires.stored),      AT(wires.artificial), AT(shells.stored),
+    AT(shells.artificial), AT(touching.normal),  AT(touching.tangential),
+    AT(touching.friction), AT(bonded.stored),    AT(bonded.dissipated),
+    AT(bonded.contact),    AT(bonded.friction),
+};
+
+/* Numbers of which the largest of all parts counts. */
+static const size_t largest[] = {AT(wires.largest_strain), AT(shells.largest_strain),
+                                 AT(touching.deepest), AT(bonded.deepest)};
+
 enum {
-    KINETIC,
-    STORED,
-    ARTIFICIAL,
-    BEYOND,
-    SHELL_STORED,
-    SHELL_ARTIFICIAL,
-    SHELL_BEYOND,
-    NORMAL,
-    TANGENTIAL,
-    FRICTION,
-    BOND_STORED,
-    BOND_DISSIPATED,
-    BOND_CONTACT,
-    BOND_FRICTION,
-    FRICTION_WORK,
-    DAMAGE_WORK,
-    TIP_WORK,
-    TENSION,
-    VERTICAL,
-    PULL,
-    SLACK = PULL + 3,
+    N_WORKS = 3,
+    N_LARGEST = WB_COUNT(largest),
+    /* Elements beyond the strain limit, in wires and shells, and a slack strand. */
+    BEYOND = WB_COUNT(summed),
+    SHELLS_BEYOND,
+    SLACK,
     N_SUMS
 };
 
-enum {
-    STRAIN,
-    SHELL_STRAIN,
-    DEEPEST,
-    BOND_DEEPEST,
-    N_MOST
-};
-
-static void add_part(const struct wb_bundle_account *a, double sum[N_SUMS], double most[N_MOST])
+static double *number_at(struct wb_bundle_account *account, size_t offset)
 {
-    const double own[N_SUMS] = {
-        [KINETIC] = a->kinetic,
-        [STORED] = a->wires.stored,
-        [ARTIFICIAL] = a->wires.artificial,
-        [BEYOND] = (double)a->wires.beyond_limit,
-        [SHELL_STORED] = a->shells.stored,
-        [SHELL_ARTIFICIAL] = a->shells.artificial,
-        [SHELL_BEYOND] = (double)a->shells.beyond_limit,
-        [NORMAL] = a->touching.normal,
-        [TANGENTIAL] = a->touching.tangential,
-        [FRICTION] = a->touching.friction,
-        [BOND_STORED] = a->bonded.stored,
-        [BOND_DISSIPATED] = a->bonded.dissipated,
-        [BOND_CONTACT] = a->bonded.contact,
-        [BOND_FRICTION] = a->bonded.friction,
-        [FRICTION_WORK] = a->friction_work,
-        [DAMAGE_WORK] = a->damage_work,
-        [TIP_WORK] = a->tip_work,
-        [TENSION] = a->tension,
-        [VERTICAL] = a->vertical,
-        [PULL] = a->pull[0],
-        [PULL + 1] = a->pull[1],
-        [PULL + 2] = a->pull[2],
-        [SLACK] = a->slack ? 1.0 : 0.0,
-    };
+    return (double *)((char *)account + offset);
+}
 
-    for (int i = 0; i < N_SUMS; i++)
-        sum[i] += own[i];
-    most[STRAIN] = fmax(most[STRAIN], a->wires.largest_strain);
-    most[SHELL_STRAIN] = fmax(most[SHELL_STRAIN], a->shells.largest_strain);
-    most[DEEPEST] = fmax(most[DEEPEST], a->touching.deepest);
-    most[BOND_DEEPEST] = fmax(most[BOND_DEEPEST], a->bonded.deepest);
+static void add_part(struct wb_bundle_account *part, double sum[N_SUMS], double most[N_LARGEST])
+{
+    for (int i = 0; i < BEYOND; i++)
+        sum[i] += *number_at(part, summed[i]);
+    sum[BEYOND] += (double)part->wires.beyond_limit;
+    sum[SHELLS_BEYOND] += (double)part->shells.beyond_limit;
+    sum[SLACK] += part->slack ? 1.0 : 0.0;
+    for (int i = 0; i < N_LARGEST; i++)
+        most[i] = fmax(most[i], *number_at(part, largest[i]));
 }
 
 static void take_sums(struct wb_bundle_account *whole, const double sum[N_SUMS],
-                      const double most[N_MOST])
+                      const double most[N_LARGEST])
 {
-    whole->kinetic = sum[KINETIC];
-    whole->wires = (struct wb_swept_hex_sums){
-        .stored = sum[STORED],
-        .artificial = sum[ARTIFICIAL],
-        .largest_strain = most[STRAIN],
-        .beyond_limit = llround(sum[BEYOND]),
-    };
-    whole->shells = (struct wb_swept_tape_sums){
-        .stored = sum[SHELL_STORED],
-        .artificial = sum[SHELL_ARTIFICIAL],
-        .largest_strain = most[SHELL_STRAIN],
-        .beyond_limit = llround(sum[SHELL_BEYOND]),
-    };
-    whole->touching = (struct wb_swept_contact_energies){
-        .normal = sum[NORMAL],
-        .tangential = sum[TANGENTIAL],
-        .friction = sum[FRICTION],
-        .deepest = most[DEEPEST],
-    };
-    whole->bonded = (struct wb_bundle_bond_energies){
-        .stored = sum[BOND_STORED],
-        .dissipated = sum[BOND_DISSIPATED],
-        .contact = sum[BOND_CONTACT],
-        .friction = sum[BOND_FRICTION],
-        .deepest = most[BOND_DEEPEST],
-    };
-    whole->friction_work += sum[FRICTION_WORK];
-    whole->damage_work += sum[DAMAGE_WORK];
-    whole->tip_work += sum[TIP_WORK];
-    whole->tension = sum[TENSION];
-    whole->vertical = sum[VERTICAL];
-    for (int c = 0; c < 3; c++)
-        whole->pull[c] = sum[PULL + c];
+    for (int i = 0; i < BEYOND; i++) {
+        double *const number = number_at(whole, summed[i]);
+        *number = i < N_WORKS ? *number + sum[i] : sum[i];
+    }
+    whole->wires.beyond_limit = llround(sum[BEYOND]);
+    whole->shells.beyond_limit = llround(sum[SHELLS_BEYOND]);
     whole->slack = sum[SLACK] > 0.0;
+    for (int i = 0; i < N_LARGEST; i++)
+        *number_at(whole, largest[i]) = most[i];
 }
 
 /* --- fields and material states --- */
-
-/* Serialised columns of stations, on their way to the complete bundle. */
-struct column_buffer {
-    unsigned char *bytes; /* NULL: only count the size */
-    size_t size;
-    bool unloads;
-};
-
-static void load_column(struct column_buffer *buffer, void *data, size_t size)
-{
-    if (buffer->bytes && buffer->unloads)
-        memcpy(data, buffer->bytes + buffer->size, size);
-    else if (buffer->bytes)
-        memcpy(buffer->bytes + buffer->size, data, size);
-    buffer->size += size;
-}
-
-static void load_field(struct column_buffer *buffer, void *field, size_t size,
-                       const struct wb_swept_layout *layout, struct wb_swept_range range)
-{
-    for (int row = 0; row < 3 * layout->n_nodes; row++) {
-        const size_t at = (size_t)row * (size_t)layout->stride + (size_t)range.first;
-        load_column(buffer, (unsigned char *)field + at * size,
-                    (size_t)(range.end - range.first) * size);
-    }
-}
 
 /* Material states are stored block by block, in rows with one element per station of a block. */
 static void load_state(struct column_buffer *buffer, void *state, size_t bytes,
@@ -450,12 +394,12 @@ static void start_accounts(struct wb_bundle_parts *parts)
 
 static void sum_accounts(struct wb_bundle_parts *parts)
 {
-    double sum[N_SUMS] = {0.0}, most[N_MOST] = {0.0};
+    double sum[N_SUMS] = {0.0}, most[N_LARGEST] = {0.0};
 
     for (int i = 0; i < parts->n_here; i++)
         add_part(&parts->here[i].part->account, sum, most);
     wb_team_sum(sum, N_SUMS);
-    wb_team_greatest(most, N_MOST);
+    wb_team_greatest(most, N_LARGEST);
     take_sums(&parts->whole->account, sum, most);
     parts->whole->clock = parts->here[0].part->clock;
     copy_tip_to_whole(parts);

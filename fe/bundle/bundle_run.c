@@ -1,6 +1,7 @@
 #include "fe/bundle/bundle_run.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,7 +68,7 @@ struct run {
     bool may_resume;
     char program[WB_SHA256_TEXT]; /* hash of this binary, if there are checkpoints */
 
-    /* Everything from here on is saved in checkpoints: visit_progress(). */
+    /* Everything from here on is saved in checkpoints: visit_run(). */
     struct wb_bundle_state state;
     double from;   /* m: deflection from which energy ratios count */
     bool counting; /* that deflection was reached */
@@ -193,34 +194,6 @@ static void visit_result(struct wb_bundle_result *h, struct wb_checkpoint *c)
     wb_checkpoint_leave(c);
 }
 
-/* Saves or restores the progress of the test. */
-static void visit_progress(struct run *r, struct wb_checkpoint *c)
-{
-    wb_checkpoint_visit_member(c, r, state);
-    wb_checkpoint_visit_member(c, r, from);
-    wb_checkpoint_visit_member(c, r, counting);
-    wb_checkpoint_visit_member(c, r, judged);
-    wb_checkpoint_visit_member(c, r, begin);
-    wb_checkpoint_visit_member(c, r, next);
-    wb_checkpoint_visit_member(c, r, kinetic);
-    wb_checkpoint_visit_member(c, r, artificial);
-    wb_checkpoint_visit_member(c, r, most_external);
-    wb_checkpoint_visit_member(c, r, branch);
-    wb_checkpoint_visit_member(c, r, under_way);
-    wb_checkpoint_visit_member(c, r, place);
-    wb_checkpoint_visit_member(c, r, looks);
-    wb_checkpoint_visit_member(c, r, left);
-    wb_checkpoint_visit_member(c, r, branch_target);
-    wb_checkpoint_visit_member(c, r, tip_released);
-    wb_checkpoint_visit_member(c, r, branch_start);
-    wb_checkpoint_visit_member(c, r, block);
-    wb_checkpoint_visit_member(c, r, vertical);
-    wb_checkpoint_visit_member(c, r, tension);
-    wb_checkpoint_visit_member(c, r, slack_samples);
-    wb_checkpoint_visit_member(c, r, samples_before);
-    wb_checkpoint_visit_member(c, r, row);
-}
-
 /* Saves or restores everything except the bundle. */
 static void visit_run(struct run *r, struct wb_checkpoint *c)
 {
@@ -232,7 +205,8 @@ static void visit_run(struct run *r, struct wb_checkpoint *c)
         observer->visit(observer->context, c);
         wb_checkpoint_leave(c);
     }
-    visit_progress(r, c);
+    wb_checkpoint_visit(c, "progress", (char *)r + offsetof(struct run, state),
+                        sizeof *r - offsetof(struct run, state));
 }
 
 static enum wb_status save(struct run *r)
