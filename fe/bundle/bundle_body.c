@@ -195,6 +195,27 @@ void wb_bundle_bodies_release(struct wb_bundle_bodies *bodies)
     *bodies = (struct wb_bundle_bodies){0};
 }
 
+void wb_bundle_bodies_describe(const struct wb_bundle_bodies *bodies,
+                               struct wb_swept_wire wires[WB_PACKING_MOST])
+{
+    const struct wb_bundle_model *model = bodies->model;
+
+    for (int w = 0; w < bodies->n_wires; w++) {
+        const struct wb_swept_section *section = &bodies->type[model->type_of[w]].section;
+        const struct wb_wire *wire = &model->type[model->type_of[w]];
+        wires[w] = (struct wb_swept_wire){
+            .n_nodes = section->n_nodes,
+            .n_surface = section->n_outline,
+            .surface = section->outline,
+            .node = (const double(*)[2])section->node,
+            .y = model->packing.wire[w].y,
+            .z = model->packing.wire[w].z,
+            .radius = 0.5 * wire->outer_diameter,
+            .youngs_modulus = wire->material.youngs_modulus,
+        };
+    }
+}
+
 void wb_bundle_bodies_hold(const struct wb_bundle_bodies *bodies, int station)
 {
     for (int c = 0; c < 3; c++) {

@@ -14,6 +14,7 @@
 #include "base/memory.h"
 #include "base/status.h"
 #include "fe/model/bundle_model.h"
+#include "fe/swept/swept.h"
 #include "fe/swept/swept_hex.h"
 #include "fe/swept/swept_step.h"
 #include "fe/swept/swept_tape.h"
@@ -99,6 +100,10 @@ WB_MUST_CHECK enum wb_status wb_bundle_bodies_create_step(const struct wb_bundle
                                                           struct wb_swept_layout layout,
                                                           const double *node_mass, double gravity,
                                                           struct wb_swept_step **out);
+
+/* Describes the wires for contact and cohesion; arrays are borrowed. */
+void wb_bundle_bodies_describe(const struct wb_bundle_bodies *bodies,
+                               struct wb_swept_wire wires[WB_PACKING_MOST]);
 
 /* Fixes all nodes of a station. */
 void wb_bundle_bodies_hold(const struct wb_bundle_bodies *bodies, int station);

@@ -53,38 +53,18 @@ static struct wb_swept_cohesion_bond find_partner(const struct wb_bundle_bodies 
     return (struct wb_swept_cohesion_bond){most, (double)count[most] / n};
 }
 
-static void describe_wires(const struct wb_bundle_bodies *bodies,
-                           struct wb_swept_cohesion_wire wires[WB_PACKING_MOST])
-{
-    for (int w = 0; w < bodies->n_wires; w++) {
-        const int type = bodies->model->type_of[w];
-        const struct wb_swept_section *section = &bodies->type[type].section;
-        wires[w] = (struct wb_swept_cohesion_wire){
-            .y = bodies->model->packing.wire[w].y,
-            .z = bodies->model->packing.wire[w].z,
-            .node = (const double(*)[2])section->node,
-            .n_nodes = section->n_nodes,
-            .n_surface = section->n_outline,
-            .surface = section->outline,
-            .radius = 0.5 * bodies->model->type[type].outer_diameter,
-        };
-    }
-}
-
 /* Creates bonds to wires, which may break, or bonds between windings. */
 static enum wb_status make_cohesion(const struct wb_bundle_bodies *bodies,
-                                    const struct wb_swept_cohesion_wire *wires, bool windings,
+                                    const struct wb_swept_wire *wires, bool windings,
                                     struct wb_swept_cohesion **out)
 {
     const struct wb_bundle_interface *interface = &bodies->model->interface;
     const int n = bodies->ring.layout.n_nodes;
-    struct wb_swept_cohesion_settings settings;
+    struct wb_swept_cohesion_settings settings = {.normal_stiffness = interface->normal_stiffness,
+                                                  .shear_stiffness = interface->shear_stiffness};
     struct wb_swept_cohesion_bond *const bonds =
         wb_memory_new((size_t)n * (size_t)bodies->extent.n_stations, sizeof *bonds);
 
-    wb_swept_cohesion_default_settings(&settings);
-    settings.normal_stiffness = interface->normal_stiffness;
-    settings.shear_stiffness = interface->shear_stiffness;
     if (interface->has_damage && !windings) {
         settings.strength = interface->damage.strength;
         settings.shear_strength = interface->damage.shear_strength;
@@ -104,20 +84,18 @@ static enum wb_status make_cohesion(const struct wb_bundle_bodies *bodies,
     return status;
 }
 
-static enum wb_status make_contact(struct wb_bundle_bond *bond,
-                                   const struct wb_swept_cohesion_wire *wires,
+static enum wb_status make_contact(struct wb_bundle_bond *bond, const struct wb_swept_wire *wires,
                                    struct wb_reason *reason)
 {
     const struct wb_bundle_bodies *bodies = bond->bodies;
     const struct wb_bundle_interface *interface = &bodies->model->interface;
-    struct wb_swept_tape_contact_settings settings;
-
-    wb_swept_tape_contact_default_settings(&settings);
-    settings.normal_stiffness = interface->normal_stiffness;
-    settings.shear_stiffness = interface->shear_stiffness;
-    settings.friction = interface->friction;
-    settings.refresh_interval = LOOK_INTERVAL;
-    settings.reason = reason;
+    const struct wb_swept_tape_contact_settings settings = {
+        .normal_stiffness = interface->normal_stiffness,
+        .shear_stiffness = interface->shear_stiffness,
+        .friction = interface->friction,
+        .refresh_interval = LOOK_INTERVAL,
+        .reason = reason,
+    };
     return wb_swept_tape_contact_create(&bond->contact, bodies->tape, bond->cohesion, &settings,
                                         bodies->n_wires, wires);
 }
@@ -129,8 +107,8 @@ enum wb_status wb_bundle_bond_create(struct wb_bundle_bond **out, struct wb_bund
     struct wb_bundle_bond *const bond = wb_memory_new(1, sizeof *bond);
     bond->bodies = bodies;
 
-    struct wb_swept_cohesion_wire wires[WB_PACKING_MOST];
-    describe_wires(bodies, wires);
+    struct wb_swept_wire wires[WB_PACKING_MOST];
+    wb_bundle_bodies_describe(bodies, wires);
     enum wb_status status = make_cohesion(bodies, wires, false, &bond->cohesion);
     if (status == WB_OK && bodies->model->tape.taping.kind == WB_TAPING_HELIX)
         status = make_cohesion(bodies, wires, true, &bond->windings);

@@ -17,7 +17,7 @@ static enum wb_status make_contact(struct wb_bundle_part *part)
 {
     const struct wb_bundle_bodies *bodies = &part->bodies;
     const struct wb_bundle_model *model = bodies->model;
-    struct wb_swept_contact_wire wires[WB_PACKING_MOST];
+    struct wb_swept_wire wires[WB_PACKING_MOST];
     struct wb_swept_contact_settings settings;
 
     if (bodies->n_wires < 2)
@@ -27,18 +27,7 @@ static enum wb_status make_contact(struct wb_bundle_part *part)
     settings.counted = bodies->extent.own;
     settings.double_precision = model->run.double_precision;
     settings.reason = &part->reason;
-    for (int w = 0; w < bodies->n_wires; w++) {
-        const struct wb_bundle_type *type = &bodies->type[model->type_of[w]];
-        const struct wb_wire *wire = &model->type[model->type_of[w]];
-        wires[w] = (struct wb_swept_contact_wire){
-            .n_nodes = type->section.n_nodes,
-            .n_surface = type->section.n_outline,
-            .surface = type->section.outline,
-            .node = (const double(*)[2])type->section.node,
-            .radius = 0.5 * wire->outer_diameter,
-            .youngs_modulus = wire->material.youngs_modulus,
-        };
-    }
+    wb_bundle_bodies_describe(bodies, wires);
     return wb_swept_contact_create(&part->contact, &settings, bodies->n_wires, wires,
                                    bodies->extent.n_stations, bodies->spacing);
 }

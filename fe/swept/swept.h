@@ -51,6 +51,18 @@ struct wb_swept_range {
     int first, end;
 };
 
+/* A straight wire of a bundle in the reference state, for contact and cohesion: its section and its
+ * surface. The arrays are read only during creation. */
+struct wb_swept_wire {
+    int n_nodes;             /* of the section */
+    int n_surface;           /* at least 3 */
+    const int *surface;      /* (n_surface): nodes, in their order around the section */
+    const double (*node)[2]; /* (n_nodes): y, z in the section, m */
+    double y, z;             /* of the section's origin, m; not used by contact between wires */
+    double radius;           /* of contact, m; not used by cohesion */
+    double youngs_modulus;   /* Pa; used by contact between wires */
+};
+
 /* The layout of a body, and the number of entries of its fields. */
 struct wb_swept_layout wb_swept_layout(int n_nodes, int n_stations);
 size_t wb_swept_size(const struct wb_swept_layout *layout);

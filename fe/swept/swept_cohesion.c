@@ -40,12 +40,6 @@ struct facing {
     double weight, offset, area, outwards;
 };
 
-void wb_swept_cohesion_default_settings(struct wb_swept_cohesion_settings *settings)
-{
-    *settings =
-        (struct wb_swept_cohesion_settings){.normal_stiffness = 30e9, .shear_stiffness = 10e9};
-}
-
 static const struct wb_swept_layout *layout_of(const struct wb_swept_cohesion *c)
 {
     return &c->tape_model->layout;
@@ -84,8 +78,7 @@ static void try_segment(const struct ray *ray, const double a[2], const double b
     best->partner[1] = nodes[1];
 }
 
-static void face_wire(const struct ray *ray, const struct wb_swept_cohesion_wire *wire,
-                      struct facing *best)
+static void face_wire(const struct ray *ray, const struct wb_swept_wire *wire, struct facing *best)
 {
     for (int i = 0; i < wire->n_surface; i++) {
         const int nodes[2] = {wire->surface[i], wire->surface[(i + 1) % wire->n_surface]};
@@ -112,7 +105,7 @@ static void find_winding_below(const struct wb_swept_cohesion *c, int k, int j,
 }
 
 static enum wb_status find_facing(const struct wb_swept_cohesion *c,
-                                  const struct wb_swept_cohesion_wire *wires,
+                                  const struct wb_swept_wire *wires,
                                   const struct wb_swept_cohesion_bond *bond, int k, int j,
                                   struct facing *out)
 {
@@ -157,8 +150,7 @@ static int find_strip(struct wb_swept_cohesion *c, int k, const struct facing *f
     return added;
 }
 
-static enum wb_status add_bond(struct wb_swept_cohesion *c,
-                               const struct wb_swept_cohesion_wire *wires,
+static enum wb_status add_bond(struct wb_swept_cohesion *c, const struct wb_swept_wire *wires,
                                const struct wb_swept_cohesion_bond *bond, int k, int j, int from)
 {
     const int n_stations = layout_of(c)->n_stations;
@@ -183,8 +175,7 @@ static enum wb_status add_bond(struct wb_swept_cohesion *c,
     return WB_OK;
 }
 
-static enum wb_status make_strips(struct wb_swept_cohesion *c,
-                                  const struct wb_swept_cohesion_wire *wires,
+static enum wb_status make_strips(struct wb_swept_cohesion *c, const struct wb_swept_wire *wires,
                                   const struct wb_swept_cohesion_bond *bond)
 {
     const struct wb_swept_layout *layout = layout_of(c);
@@ -235,7 +226,7 @@ static enum wb_status check(const struct wb_swept_cohesion_settings *s)
     return WB_OK;
 }
 
-static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_cohesion_wire *wires,
+static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_wire *wires,
                            const struct wb_swept_cohesion_bond *bond)
 {
     const struct wb_swept_layout *layout = layout_of(c);
@@ -272,7 +263,7 @@ static enum wb_status fill(struct wb_swept_cohesion *c, const struct wb_swept_co
 enum wb_status wb_swept_cohesion_create(struct wb_swept_cohesion **out,
                                         const struct wb_swept_tape *tape,
                                         const struct wb_swept_cohesion_settings *settings,
-                                        int n_wires, const struct wb_swept_cohesion_wire *wires,
+                                        int n_wires, const struct wb_swept_wire *wires,
                                         const struct wb_swept_cohesion_bond *bond)
 {
     *out = NULL;

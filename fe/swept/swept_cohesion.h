@@ -36,26 +36,13 @@ struct wb_swept_cohesion_bond {
     double share; /* of the node's area, above 0, at most 1 */
 };
 
-/* A straight wire in the reference state, and its section's position in the bundle. */
-struct wb_swept_cohesion_wire {
-    double y, z;             /* of the section's origin, m */
-    const double (*node)[2]; /* y, z in the section, m; read only during creation */
-    int n_nodes;
-    int n_surface;
-    const int *surface; /* (n_surface) nodes, in their order around the section */
-    double radius; /* contact radius, m (fe/swept/swept_tape_contact.h); not used by cohesion */
-};
-
 struct wb_swept_cohesion_settings {
-    double normal_stiffness; /* K_nn, Pa/m; default 30 N/mm3 */
-    double shear_stiffness;  /* K_ss = K_tt, Pa/m; default 10 N/mm3 */
+    double normal_stiffness; /* K_nn, Pa/m */
+    double shear_stiffness;  /* K_ss = K_tt, Pa/m */
     double strength;         /* Pa; 0: bonds never break, and the next two are not used */
     double shear_strength;   /* Pa */
     double fracture_energy;  /* J/m2; more than the energy stored at either strength */
 };
-
-/* The paper's stiffnesses, no damage. */
-void wb_swept_cohesion_default_settings(struct wb_swept_cohesion_settings *settings);
 
 struct wb_swept_cohesion; /* opaque */
 
@@ -65,7 +52,7 @@ struct wb_swept_cohesion; /* opaque */
 WB_MUST_CHECK enum wb_status
 wb_swept_cohesion_create(struct wb_swept_cohesion **out, const struct wb_swept_tape *tape,
                          const struct wb_swept_cohesion_settings *settings, int n_wires,
-                         const struct wb_swept_cohesion_wire *wires,
+                         const struct wb_swept_wire *wires,
                          const struct wb_swept_cohesion_bond *bond);
 void wb_swept_cohesion_destroy(struct wb_swept_cohesion *cohesion);
 

@@ -153,7 +153,7 @@ static enum wb_status check_settings(const struct wb_swept_contact_settings *s)
     return WB_OK;
 }
 
-static enum wb_status check_wire(const struct wb_swept_contact_wire *wire, int w)
+static enum wb_status check_wire(const struct wb_swept_wire *wire, int w)
 {
     if (!(in_range(wire->radius, 1e-12, 1e12) && in_range(wire->youngs_modulus, 1e-12, 1e30)))
         return wb_fail(WB_ERR_ARGUMENT,
@@ -179,8 +179,7 @@ static enum wb_status check_wire(const struct wb_swept_contact_wire *wire, int w
 
 /* Least-squares fit of a linear function of y and z: its value at 0 and its two slopes, as weights
  * of the nodes' values. */
-static enum wb_status find_weights(const struct wb_swept_contact_wire *wire, int w,
-                                   double (*weight)[3])
+static enum wb_status find_weights(const struct wb_swept_wire *wire, int w, double (*weight)[3])
 {
     double A[3][3] = {{0.0}}, inverse[3][3];
 
@@ -268,8 +267,7 @@ static void point_at_memory(struct wb_swept_contact *c)
     }
 }
 
-static enum wb_status take_wires(struct wb_swept_contact *c,
-                                 const struct wb_swept_contact_wire *wires)
+static enum wb_status take_wires(struct wb_swept_contact *c, const struct wb_swept_wire *wires)
 {
     int n = 0;
 
@@ -316,7 +314,7 @@ static void size_model(struct wb_swept_contact *c, int n_wires, int n_stations)
 
 enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
                                        const struct wb_swept_contact_settings *settings,
-                                       int n_wires, const struct wb_swept_contact_wire *wires,
+                                       int n_wires, const struct wb_swept_wire *wires,
                                        int n_stations, double spacing)
 {
     enum wb_swept_instructions instructions;

@@ -40,15 +40,6 @@
 #include "fe/material/friction.h"
 #include "fe/swept/swept.h"
 
-struct wb_swept_contact_wire {
-    int n_nodes;             /* of the section */
-    int n_surface;           /* at least 3 */
-    const int *surface;      /* (n_surface): surface nodes; copied */
-    const double (*node)[2]; /* (n_nodes): y, z in the section, m; copied */
-    double radius;           /* of contact, m */
-    double youngs_modulus;   /* Pa */
-};
-
 struct wb_swept_contact_settings {
     double stiffness; /* k / E, with the harmonic mean of the two wires' moduli; default 0.25, about
                          that of two cylinders pressed together */
@@ -76,7 +67,7 @@ struct wb_swept_contact; /* opaque */
 WB_MUST_CHECK enum wb_status
 wb_swept_contact_create(struct wb_swept_contact **out,
                         const struct wb_swept_contact_settings *settings, int n_wires,
-                        const struct wb_swept_contact_wire *wires, int n_stations, double spacing);
+                        const struct wb_swept_wire *wires, int n_stations, double spacing);
 void wb_swept_contact_destroy(struct wb_swept_contact *contact);
 
 struct wb_swept_contact_energies {

@@ -64,14 +64,6 @@ struct wb_swept_tape_contact {
     struct wb_memory memory; /* of all arrays */
 };
 
-void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings)
-{
-    *settings =
-        (struct wb_swept_tape_contact_settings){.normal_stiffness = 30e9,
-                                                .shear_stiffness = 10e9,
-                                                .friction = {.mu_static = 0.4, .mu_kinetic = 0.4}};
-}
-
 static const struct wb_swept_layout *layout_of(const struct wb_swept_tape_contact *c)
 {
     return &c->tape_model->layout;
@@ -472,7 +464,7 @@ static enum wb_status refresh(struct wb_swept_tape_contact *c,
 /* --- creation --- */
 
 static enum wb_status check(const struct wb_swept_tape_contact_settings *s, int n_wires,
-                            const struct wb_swept_cohesion_wire *wires)
+                            const struct wb_swept_wire *wires)
 {
     if (!(s->normal_stiffness > 0.0 && isfinite(s->normal_stiffness)) ||
         !(s->shear_stiffness > 0.0 && isfinite(s->shear_stiffness)))
@@ -503,7 +495,7 @@ static enum wb_status check(const struct wb_swept_tape_contact_settings *s, int 
     return WB_OK;
 }
 
-static void copy_wires(struct wb_swept_tape_contact *c, const struct wb_swept_cohesion_wire *wires)
+static void copy_wires(struct wb_swept_tape_contact *c, const struct wb_swept_wire *wires)
 {
     double smallest = (double)INFINITY;
     size_t nodes = 0;
@@ -543,7 +535,7 @@ static void allocate(struct wb_swept_tape_contact *c)
         &c->memory, (size_t)layout->n_nodes * HISTORY * (size_t)layout->stride, real_size(c));
 }
 
-static void fill(struct wb_swept_tape_contact *c, const struct wb_swept_cohesion_wire *wires)
+static void fill(struct wb_swept_tape_contact *c, const struct wb_swept_wire *wires)
 {
     const struct wb_swept_layout *layout = layout_of(c);
     const struct wb_swept_tape_contact_settings *s = &c->settings;
@@ -572,7 +564,7 @@ enum wb_status wb_swept_tape_contact_create(struct wb_swept_tape_contact **out,
                                             const struct wb_swept_tape *tape,
                                             const struct wb_swept_cohesion *cohesion,
                                             const struct wb_swept_tape_contact_settings *settings,
-                                            int n_wires, const struct wb_swept_cohesion_wire *wires)
+                                            int n_wires, const struct wb_swept_wire *wires)
 {
     *out = NULL;
     WB_TRY(check(settings, n_wires, wires));

@@ -29,9 +29,9 @@
 #include "fe/swept/swept_cohesion.h"
 
 struct wb_swept_tape_contact_settings {
-    double normal_stiffness;     /* Pa/m; default 30 N/mm3 */
-    double shear_stiffness;      /* of sticking, Pa/m; default 10 N/mm3 */
-    struct wb_friction friction; /* default: 0.4, static and kinetic */
+    double normal_stiffness; /* Pa/m */
+    double shear_stiffness;  /* of sticking, Pa/m */
+    struct wb_friction friction;
     double margin; /* m: gap within which a node is tracked; 0: a twentieth of the smallest radius.
                       Nodes must not approach by more than this between refreshes */
     int refresh_interval; /* steps; 0: 100 */
@@ -39,8 +39,6 @@ struct wb_swept_tape_contact_settings {
     /* Borrowed; receives the reason of a failed step. NULL: the reason is logged. */
     struct wb_reason *reason;
 };
-
-void wb_swept_tape_contact_default_settings(struct wb_swept_tape_contact_settings *settings);
 
 struct wb_swept_tape_contact; /* opaque */
 
@@ -50,7 +48,7 @@ WB_MUST_CHECK enum wb_status
 wb_swept_tape_contact_create(struct wb_swept_tape_contact **out, const struct wb_swept_tape *tape,
                              const struct wb_swept_cohesion *cohesion,
                              const struct wb_swept_tape_contact_settings *settings, int n_wires,
-                             const struct wb_swept_cohesion_wire *wires);
+                             const struct wb_swept_wire *wires);
 void wb_swept_tape_contact_destroy(struct wb_swept_tape_contact *contact);
 
 struct wb_swept_tape_contact_sums {

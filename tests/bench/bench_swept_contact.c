@@ -142,7 +142,7 @@ static bool time_problem(const struct problem *problem, enum wb_swept_instructio
 {
     struct bundle bundle = {0};
     struct wb_swept_contact_settings settings;
-    struct wb_swept_contact_wire wires[MOST_WIRES];
+    struct wb_swept_wire wires[MOST_WIRES];
     struct wb_swept_contact *contact = NULL;
     struct timing t = {0};
 
@@ -152,12 +152,12 @@ static bool time_problem(const struct problem *problem, enum wb_swept_instructio
     settings.friction.decay = 2000.0;
     bool good = make_bundle(problem, &bundle);
     for (int w = 0; w < problem->n_wires; w++)
-        wires[w] = (struct wb_swept_contact_wire){.n_nodes = problem->n_surface,
-                                                  .n_surface = problem->n_surface,
-                                                  .surface = bundle.surface,
-                                                  .node = (const double(*)[2])bundle.node,
-                                                  .radius = wire_radius,
-                                                  .youngs_modulus = 4.5e9};
+        wires[w] = (struct wb_swept_wire){.n_nodes = problem->n_surface,
+                                          .n_surface = problem->n_surface,
+                                          .surface = bundle.surface,
+                                          .node = (const double(*)[2])bundle.node,
+                                          .radius = wire_radius,
+                                          .youngs_modulus = 4.5e9};
     good = good &&
            wb_swept_contact_create(&contact, &settings, problem->n_wires, wires,
                                    bundle.layout.n_stations, length / problem->n_elements) == WB_OK;

@@ -11,6 +11,7 @@
 #include "fe/swept/swept_tape.h"
 #include "fe/swept/swept_tape_contact.h"
 #include "tests/bench/clock.h"
+#include "tests/fe/swept/adhesive.h"
 
 enum {
     NODES = 32,
@@ -186,14 +187,14 @@ static enum wb_status time_wire(struct sleeve *s, double ns[2])
         return WB_ERR_MEMORY;
     for (int i = 0; i < NODES * (ALONG + 1); i++)
         bond[i] = (struct wb_swept_cohesion_bond){0, 1.0};
-    wb_swept_cohesion_default_settings(&bonded);
-    wb_swept_tape_contact_default_settings(&touching);
+    default_cohesion(&bonded);
+    default_tape_contact(&touching);
     create_wire(&w, radius - 0.099e-3);
-    const struct wb_swept_cohesion_wire wire = {.node = (const double(*)[2])w.node,
-                                                .n_nodes = SURFACE,
-                                                .n_surface = SURFACE,
-                                                .surface = w.surface,
-                                                .radius = radius - 0.099e-3};
+    const struct wb_swept_wire wire = {.node = (const double(*)[2])w.node,
+                                       .n_nodes = SURFACE,
+                                       .n_surface = SURFACE,
+                                       .surface = w.surface,
+                                       .radius = radius - 0.099e-3};
     WB_TRY(wb_swept_cohesion_create(&cohesion, s->tape, &bonded, 1, &wire, bond));
     WB_TRY(wb_swept_tape_contact_create(&contact, s->tape, NULL, &touching, 1, &wire));
     const struct wb_swept_cohesion_fields fields = {{s->position, s->director, s->force, s->moment},

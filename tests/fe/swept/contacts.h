@@ -34,7 +34,7 @@ static inline void contacts_init(struct contacts *c,
                                  const struct wb_swept_contact_settings *settings, int n_wires,
                                  const double *radius, int n_stations, double spacing)
 {
-    struct wb_swept_contact_wire wires[CONTACTS_MOST_WIRES];
+    struct wb_swept_wire wires[CONTACTS_MOST_WIRES];
 
     *c = (struct contacts){.n_wires = n_wires,
                            .n_stations = n_stations,
@@ -49,12 +49,12 @@ static inline void contacts_init(struct contacts *c,
             c->node[w][k][0] = 0.97 * radius[w] * cos(angle);
             c->node[w][k][1] = 0.97 * radius[w] * sin(angle);
         }
-        wires[w] = (struct wb_swept_contact_wire){.n_nodes = CONTACTS_NODES,
-                                                  .n_surface = CONTACTS_SURFACE,
-                                                  .surface = c->surface,
-                                                  .node = (const double(*)[2])c->node[w],
-                                                  .radius = radius[w],
-                                                  .youngs_modulus = 1e9};
+        wires[w] = (struct wb_swept_wire){.n_nodes = CONTACTS_NODES,
+                                          .n_surface = CONTACTS_SURFACE,
+                                          .surface = c->surface,
+                                          .node = (const double(*)[2])c->node[w],
+                                          .radius = radius[w],
+                                          .youngs_modulus = 1e9};
         c->position[w] = wb_swept_allocate(wb_swept_size(&c->layout), sizeof(double));
         c->force[w] = wb_swept_allocate(wb_swept_size(&c->layout),
                                         c->is_double ? sizeof(double) : sizeof(float));

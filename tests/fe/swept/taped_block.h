@@ -3,6 +3,7 @@
 #define WB_TESTS_FE_SWEPT_TAPED_BLOCK_H
 
 #include "fe/swept/swept_cohesion.h"
+#include "tests/fe/swept/adhesive.h"
 #include "tests/fe/swept/tapes.h"
 
 enum {
@@ -18,7 +19,7 @@ static const double block_node[CORNERS][2] = {{0.0, 1.5e-3},  {0.0, 0.7e-3},  {0
                                               {0.0, -0.6e-3}, {0.0, -1.4e-3}, {-1e-3, -1.4e-3},
                                               {-1e-3, 0.0},   {-1e-3, 1.5e-3}};
 static const int block_surface[CORNERS] = {0, 1, 2, 3, 4, 5, 6, 7};
-static const struct wb_swept_cohesion_wire block = {
+static const struct wb_swept_wire block = {
     .node = block_node,
     .n_nodes = CORNERS,
     .n_surface = CORNERS,
@@ -36,7 +37,7 @@ struct pair {
 static inline struct wb_swept_cohesion_settings brittle(void)
 {
     struct wb_swept_cohesion_settings settings;
-    wb_swept_cohesion_default_settings(&settings);
+    default_cohesion(&settings);
     settings.strength = 0.5e6;
     settings.shear_strength = 0.2e6;
     settings.fracture_energy = 25.0;

@@ -7,7 +7,7 @@ static void opening_uses_only_the_normal_stiffness(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings settings;
-    wb_swept_cohesion_default_settings(&settings);
+    default_cohesion(&settings);
     struct pair p = pair_create(&settings, true, WB_SWEPT_BEST);
     double sum[3];
     assert_close_relative(wb_swept_cohesion_area(p.cohesion), whole_area, 1e-12);
@@ -35,7 +35,7 @@ static void shear_uses_only_the_shear_stiffness(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings settings;
-    wb_swept_cohesion_default_settings(&settings);
+    default_cohesion(&settings);
     struct pair p = pair_create(&settings, true, WB_SWEPT_BEST);
     double sum[3];
     set_tape(&p, 3e-6, 0.0, -4e-6);
@@ -55,7 +55,7 @@ static void shear_rotates_with_the_pair(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings settings;
-    wb_swept_cohesion_default_settings(&settings);
+    default_cohesion(&settings);
     for (int is_double = 0; is_double < 2; is_double++) {
         struct pair p = pair_create(&settings, is_double, WB_SWEPT_BEST);
         double sum[3], R[3][3];
@@ -85,7 +85,7 @@ static void forces_are_the_derivatives_of_the_energy(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings settings;
-    wb_swept_cohesion_default_settings(&settings);
+    default_cohesion(&settings);
     struct pair p = shaken(&settings, true, WB_SWEPT_BEST);
     const size_t tape = wb_swept_size(&p.tape.layout), wire = wb_swept_size(&p.layout);
     double *force = malloc((2 * tape + wire) * sizeof *force);
@@ -250,7 +250,7 @@ static void frequency_bound_of_cohesion_holds(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings settings;
-    wb_swept_cohesion_default_settings(&settings);
+    default_cohesion(&settings);
     for (int heavy = 0; heavy < 2; heavy++) {
         struct pair p = pair_create(&settings, true, WB_SWEPT_BEST);
         double mass[NODES], inertia[NODES], wire_mass[CORNERS];

@@ -28,11 +28,15 @@ static void sleeve_faces_the_wire_it_lies_on(void **unused)
             bond[9 * k + j] = (struct wb_swept_cohesion_bond){k % 3 ? 0 : -1, 0.5};
         }
     }
-    const struct wb_swept_cohesion_wire wire = {wire_y, wire_z, (const double(*)[2])node,
-                                                13,     12,     surface};
+    const struct wb_swept_wire wire = {.node = (const double(*)[2])node,
+                                       .n_nodes = 13,
+                                       .n_surface = 12,
+                                       .surface = surface,
+                                       .y = wire_y,
+                                       .z = wire_z};
     struct wb_swept_cohesion_settings settings;
     struct wb_swept_cohesion *cohesion = NULL;
-    wb_swept_cohesion_default_settings(&settings);
+    default_cohesion(&settings);
     struct test_tape t = test_tape_create(&model);
     assert_int_equal(wb_swept_cohesion_create(&cohesion, t.tape, &settings, 1, &wire, bond), WB_OK);
     assert_close_relative(wb_swept_cohesion_area(cohesion),
@@ -92,7 +96,7 @@ static void windings_are_bonded_to_the_one_inside(void **unused)
     }
     struct wb_swept_cohesion_settings settings;
     struct wb_swept_cohesion *cohesion = NULL;
-    wb_swept_cohesion_default_settings(&settings);
+    default_cohesion(&settings);
     struct test_tape t = test_tape_create(&model);
     assert_int_equal(wb_swept_cohesion_create(&cohesion, t.tape, &settings, 0, NULL, bond), WB_OK);
     const struct wb_swept_cohesion_fields fields = {
@@ -122,7 +126,7 @@ static void invalid_bonds_are_rejected(void **unused)
     (void)unused;
     struct wb_swept_cohesion_settings good, bad;
     struct wb_swept_cohesion *cohesion = NULL;
-    wb_swept_cohesion_default_settings(&good);
+    default_cohesion(&good);
     struct pair p = pair_create(&good, false, WB_SWEPT_BEST);
     struct wb_swept_cohesion_bond bond[NODES * STATIONS];
     for (int i = 0; i < NODES * STATIONS; i++)
@@ -146,7 +150,7 @@ static void invalid_bonds_are_rejected(void **unused)
     assert_int_equal(wb_swept_cohesion_create(&cohesion, p.tape.tape, &good, 1, &block, bond),
                      WB_ERR_ARGUMENT);
     bond[7].share = 1.0;
-    struct wb_swept_cohesion_wire aside = block;
+    struct wb_swept_wire aside = block;
     aside.z = 5e-3;
     assert_int_equal(wb_swept_cohesion_create(&cohesion, p.tape.tape, &good, 1, &aside, bond),
                      WB_ERR_ARGUMENT);

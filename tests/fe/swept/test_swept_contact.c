@@ -508,12 +508,12 @@ static void invalid_input_is_rejected(void **state)
 }
 
 static enum wb_status try_create(void (*change)(struct wb_swept_contact_settings *,
-                                                struct wb_swept_contact_wire *, int *, double *))
+                                                struct wb_swept_wire *, int *, double *))
 {
     static const int surface[3] = {0, 1, 2};
     static const double node[3][2] = {{1e-3, 0.0}, {0.0, 1e-3}, {-1e-3, 0.0}};
     struct wb_swept_contact_settings settings = contacts_settings();
-    struct wb_swept_contact_wire wire = {3, 3, surface, node, 1e-3, 1e9};
+    struct wb_swept_wire wire = {3, 3, surface, node, .radius = 1e-3, .youngs_modulus = 1e9};
     struct wb_swept_contact *contact = NULL;
     int n_stations = 5;
     double spacing = 1e-3;
@@ -528,8 +528,8 @@ static enum wb_status try_create(void (*change)(struct wb_swept_contact_settings
 }
 
 #define CHANGE(name, statement)                                                                    \
-    static void name(struct wb_swept_contact_settings *settings,                                   \
-                     struct wb_swept_contact_wire *wire, int *n_stations, double *spacing)         \
+    static void name(struct wb_swept_contact_settings *settings, struct wb_swept_wire *wire,       \
+                     int *n_stations, double *spacing)                                             \
     {                                                                                              \
         (void)settings, (void)wire, (void)n_stations, (void)spacing;                               \
         statement;                                                                                 \

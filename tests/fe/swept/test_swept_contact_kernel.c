@@ -372,7 +372,8 @@ static bool has_instructions(enum wb_swept_instructions set)
     struct wb_swept_contact *contact = NULL;
     static const int surface[3] = {0, 1, 2};
     static const double node[3][2] = {{1e-3, 0.0}, {0.0, 1e-3}, {-1e-3, 0.0}};
-    const struct wb_swept_contact_wire wire = {3, 3, surface, node, radius, 1e9};
+    const struct wb_swept_wire wire = {
+        3, 3, surface, node, .radius = radius, .youngs_modulus = 1e9};
 
     settings.instructions = set;
     wb_log_set_sink(discard_message, NULL);

@@ -1,6 +1,7 @@
 #include "fe/swept/swept_private.h"
 #include "fe/swept/swept_tape_contact.h"
 
+#include "tests/fe/swept/adhesive.h"
 #include "tests/fe/swept/tapes.h"
 
 enum {
@@ -26,7 +27,7 @@ struct grip {
 static struct wb_swept_tape_contact_settings usual(void)
 {
     struct wb_swept_tape_contact_settings settings;
-    wb_swept_tape_contact_default_settings(&settings);
+    default_tape_contact(&settings);
     settings.friction.mu_kinetic = 0.1;
     settings.refresh_interval = 7;
     return settings;
@@ -53,11 +54,11 @@ static void grip_create(struct grip *g, const struct wb_swept_tape_contact_setti
             tape_put(&g->layout, g->start, k, j, spacing * j, g->node[k][0], g->node[k][1]);
     }
     memcpy(g->position, g->start, wb_swept_size(&g->layout) * sizeof(double));
-    const struct wb_swept_cohesion_wire wire = {.node = (const double(*)[2])g->node,
-                                                .n_nodes = SURFACE,
-                                                .n_surface = SURFACE,
-                                                .surface = g->surface,
-                                                .radius = radius};
+    const struct wb_swept_wire wire = {.node = (const double(*)[2])g->node,
+                                       .n_nodes = SURFACE,
+                                       .n_surface = SURFACE,
+                                       .surface = g->surface,
+                                       .radius = radius};
     if (bonded) {
         struct wb_swept_cohesion_bond bond[RING * STATIONS];
         for (int i = 0; i < RING * STATIONS; i++)
@@ -500,7 +501,7 @@ static void contact_takes_over_from_a_broken_bond(void **unused)
     (void)unused;
     struct wb_swept_cohesion_settings bonded;
     struct wb_swept_tape_contact_settings settings = usual();
-    wb_swept_cohesion_default_settings(&bonded);
+    default_cohesion(&bonded);
     bonded.strength = 0.5e6;
     bonded.shear_strength = 0.2e6;
     bonded.fracture_energy = 25.0;
@@ -573,10 +574,10 @@ static void failed_steps_and_invalid_input_are_reported(void **unused)
     grip_create(&g, &settings, 0.55 * radius, false, NULL);
     assert_int_equal(try_step(&g, 1e-6, &sums), WB_ERR_DATA);
     struct wb_swept_tape_contact *contact = NULL;
-    const struct wb_swept_cohesion_wire wire = {.node = (const double(*)[2])g.node,
-                                                .n_nodes = SURFACE,
-                                                .n_surface = SURFACE,
-                                                .surface = g.surface};
+    const struct wb_swept_wire wire = {.node = (const double(*)[2])g.node,
+                                       .n_nodes = SURFACE,
+                                       .n_surface = SURFACE,
+                                       .surface = g.surface};
     assert_int_equal(wb_swept_tape_contact_create(&contact, g.tape.tape, NULL, &settings, 1, &wire),
                      WB_ERR_ARGUMENT);
     settings.friction.mu_kinetic = 0.5; /* above the static one */

@@ -1,6 +1,7 @@
 /* A real winding, half-lapped, each layer bonded to the one below, compared with the sleeve of both
  * layers. */
 #include "fe/swept/swept_cohesion.h"
+#include "tests/fe/swept/adhesive.h"
 #include "tests/fe/swept/tapes.h"
 
 enum {
@@ -152,7 +153,7 @@ static void bonded_windings_follow_shear_lag(void **unused)
 {
     (void)unused;
     struct wb_swept_cohesion_settings settings;
-    wb_swept_cohesion_default_settings(&settings);
+    default_cohesion(&settings);
     const double usual = stiffness(&settings), usual_lag = lapped(settings.shear_stiffness);
     settings.normal_stiffness *= 0.03;
     settings.shear_stiffness *= 0.03;
