@@ -44,15 +44,7 @@ struct wb_swept_contact {
     double *radius, *youngs_modulus; /* (n_wires) */
     double *searched;                /* (n_wires x 3 x n_stations): centres at the last search */
     long long step;                  /* steps done */
-
-    double *centre_memory, *fixed_memory, *rows_memory; /* of all wires, of all pairs */
-    void *turn_memory, *inverse_memory, *load_memory;   /* in the kernel's type */
-    unsigned char *active_memory;
-    struct wb_swept_contact_window *window_memory;
-    int *node_memory, *side_memory;
-    double (*weight_memory)[3];
-    void *narrow_weight_memory;
-    struct wb_memory memory; /* of all arrays */
+    struct wb_memory memory;         /* of all arrays, also of the model's */
 };
 
 /* k of two wires. */
@@ -214,81 +206,70 @@ static enum wb_status find_weights(const struct wb_swept_wire *wire, int w, doub
     return WB_OK;
 }
 
-static void allocate(struct wb_swept_contact *c, int n_surface)
+/* Frames of a wire, with guards before and after rows that are read between stations. */
+static enum wb_status take_wire(struct wb_swept_contact *c, const struct wb_swept_wire *wire, int w)
+{
+    struct wb_swept_contact_frames *out = &c->model.wire[w];
+    struct wb_memory *const memory = &c->memory;
+    const size_t n = (size_t)wire->n_surface, real = real_size(c);
+    const size_t stride = (size_t)c->model.stride, row = (size_t)c->model.row;
+    int *const node = wb_memory_take(memory, n, sizeof *node);
+    double(*const weight)[3] = wb_memory_take(memory, n, sizeof *weight);
+
+    memcpy(node, wire->surface, n * sizeof *node);
+    WB_TRY(find_weights(wire, w, weight));
+    *out = (struct wb_swept_contact_frames){
+        .n_nodes = wire->n_nodes,
+        .n_surface = wire->n_surface,
+        .node = node,
+        .weight = (const double(*)[3])weight,
+        .narrow_weight =
+            wb_swept_kernel_convert(memory, c->settings.double_precision, weight[0], 3 * n),
+        .centre = (double *)wb_swept_take(memory, 3 * row, sizeof(double)) + stride,
+        .fixed = wb_swept_take(memory, WB_SWEPT_CONTACT_FIXED * stride, sizeof(double)),
+        .turn =
+            address(c, wb_swept_take(memory, WB_SWEPT_CONTACT_TURNS * row, real), c->model.stride),
+        .inverse = wb_swept_take(memory, WB_SWEPT_CONTACT_INVERSES * stride, real),
+        .side = wb_memory_take(memory, (size_t)c->model.n_wires, sizeof(int)),
+    };
+    c->radius[w] = wire->radius;
+    c->youngs_modulus[w] = wire->youngs_modulus;
+    c->smallest_radius = fmin(c->smallest_radius, wire->radius);
+    return WB_OK;
+}
+
+static void take_pair(struct wb_swept_contact *c, struct wb_swept_contact_pair_rows *pair)
+{
+    struct wb_memory *const memory = &c->memory;
+    const size_t stride = (size_t)c->model.stride, row = (size_t)c->model.row;
+    const size_t blocks = (size_t)c->model.n_blocks;
+
+    pair->rows = wb_swept_take(memory, WB_SWEPT_CONTACT_PAIR * stride, sizeof(double));
+    pair->load = address(c, wb_swept_take(memory, WB_SWEPT_CONTACT_LOAD * row, real_size(c)),
+                         c->model.stride);
+    pair->active = wb_memory_take(memory, blocks, 1);
+    for (int side = 0; side < 2; side++) {
+        pair->from[side] = wb_memory_take(memory, blocks, sizeof *pair->from[side]);
+        pair->to[side] = wb_memory_take(memory, blocks, sizeof *pair->to[side]);
+    }
+}
+
+static enum wb_status allocate(struct wb_swept_contact *c, const struct wb_swept_wire *wires)
 {
     struct wb_swept_contact_model *m = &c->model;
-    struct wb_memory *const memory = &c->memory;
-    const size_t wires = (size_t)m->n_wires, pairs = (size_t)c->most_pairs;
-    const size_t blocks = (size_t)m->n_blocks, surface = (size_t)n_surface;
-    const size_t stride = (size_t)m->stride, row = (size_t)m->row, real = real_size(c);
-    const size_t fixed = wires * WB_SWEPT_CONTACT_FIXED * stride;
+    const size_t n = (size_t)m->n_wires;
 
-    c->centre_memory = wb_swept_take(memory, wires * 3 * row, sizeof(double));
-    c->fixed_memory = wb_swept_take(memory, fixed, sizeof(double));
-    c->rows_memory = wb_swept_take(memory, pairs * WB_SWEPT_CONTACT_PAIR * stride, sizeof(double));
-    c->turn_memory = wb_swept_take(memory, wires * WB_SWEPT_CONTACT_TURNS * row, real);
-    c->inverse_memory = wb_swept_take(memory, wires * WB_SWEPT_CONTACT_INVERSES * stride, real);
-    c->load_memory = wb_swept_take(memory, pairs * WB_SWEPT_CONTACT_LOAD * row, real);
-    c->narrow_weight_memory = wb_swept_take(memory, 3 * surface, real);
-    m->wire = wb_memory_take(memory, wires, sizeof *m->wire);
-    m->pair = wb_memory_take(memory, pairs, sizeof *m->pair);
-    m->sums = wb_memory_take(memory, blocks, sizeof *m->sums);
-    c->radius = wb_memory_take(memory, 2 * wires, sizeof *c->radius);
-    c->searched = wb_memory_take(memory, wires * 3 * (size_t)m->n_stations, sizeof *c->searched);
-    c->active_memory = wb_memory_take(memory, pairs * blocks, 1);
-    c->window_memory = wb_memory_take(memory, 4 * pairs * blocks, sizeof *c->window_memory);
-    c->node_memory = wb_memory_take(memory, surface, sizeof *c->node_memory);
-    c->side_memory = wb_memory_take(memory, 2 * pairs, sizeof *c->side_memory);
-    c->weight_memory = wb_memory_take(memory, surface, sizeof *c->weight_memory);
-    c->youngs_modulus = c->radius + m->n_wires;
-}
-
-static void point_at_memory(struct wb_swept_contact *c)
-{
-    const struct wb_swept_contact_model *m = &c->model;
-    const ptrdiff_t stride = m->stride, row = m->row;
-
-    for (int w = 0; w < m->n_wires; w++) {
-        m->wire[w].centre = c->centre_memory + w * 3 * row + stride;
-        m->wire[w].fixed = c->fixed_memory + w * WB_SWEPT_CONTACT_FIXED * stride;
-        m->wire[w].turn = address(c, c->turn_memory, w * WB_SWEPT_CONTACT_TURNS * row + stride);
-        m->wire[w].inverse = address(c, c->inverse_memory, w * WB_SWEPT_CONTACT_INVERSES * stride);
-    }
-    for (int p = 0; p < c->most_pairs; p++) {
-        struct wb_swept_contact_pair_rows *pair = &m->pair[p];
-        struct wb_swept_contact_window *window = c->window_memory + (ptrdiff_t)p * 4 * m->n_blocks;
-        pair->rows = c->rows_memory + p * WB_SWEPT_CONTACT_PAIR * stride;
-        pair->load = address(c, c->load_memory, p * WB_SWEPT_CONTACT_LOAD * row + stride);
-        pair->active = c->active_memory + (ptrdiff_t)p * m->n_blocks;
-        for (int side = 0; side < 2; side++, window += 2 * m->n_blocks) {
-            pair->from[side] = window;
-            pair->to[side] = window + m->n_blocks;
-        }
-    }
-}
-
-static enum wb_status take_wires(struct wb_swept_contact *c, const struct wb_swept_wire *wires)
-{
-    int n = 0;
-
+    m->wire = wb_memory_take(&c->memory, n, sizeof *m->wire);
+    m->pair = wb_memory_take(&c->memory, (size_t)c->most_pairs, sizeof *m->pair);
+    m->sums = wb_memory_take(&c->memory, (size_t)m->n_blocks, sizeof *m->sums);
+    c->radius = wb_memory_take(&c->memory, n, sizeof *c->radius);
+    c->youngs_modulus = wb_memory_take(&c->memory, n, sizeof *c->youngs_modulus);
+    c->searched = wb_memory_take(&c->memory, n * 3 * (size_t)m->n_stations, sizeof *c->searched);
     c->smallest_radius = (double)INFINITY;
-    for (int w = 0; w < c->model.n_wires; w++) {
-        struct wb_swept_contact_frames *out = &c->model.wire[w];
-        out->n_nodes = wires[w].n_nodes;
-        out->n_surface = wires[w].n_surface;
-        out->node = c->node_memory + n;
-        out->weight = (const double(*)[3])c->weight_memory + n;
-        memcpy(c->node_memory + n, wires[w].surface, sizeof(int) * (size_t)wires[w].n_surface);
-        WB_TRY(find_weights(&wires[w], w, c->weight_memory + n));
-        out->narrow_weight = address(c, c->narrow_weight_memory, (ptrdiff_t)3 * n);
-        for (int i = 0; i < 3 * wires[w].n_surface; i++)
-            set(c, c->narrow_weight_memory, (ptrdiff_t)3 * n + i,
-                c->weight_memory[n + i / 3][i % 3]);
-        n += wires[w].n_surface;
-        c->radius[w] = wires[w].radius;
-        c->youngs_modulus[w] = wires[w].youngs_modulus;
-        c->smallest_radius = fmin(c->smallest_radius, wires[w].radius);
-    }
+    for (int w = 0; w < m->n_wires; w++)
+        WB_TRY(take_wire(c, &wires[w], w));
+    for (int p = 0; p < c->most_pairs; p++)
+        take_pair(c, &m->pair[p]);
     return WB_OK;
 }
 
@@ -318,7 +299,6 @@ enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
                                        int n_stations, double spacing)
 {
     enum wb_swept_instructions instructions;
-    int n_surface = 0;
 
     if (n_wires < 1 || n_wires > MAX_WIRES || n_stations < 2 || n_stations > MAX_STATIONS ||
         !(in_range(spacing, 1e-12, 1e12)))
@@ -328,19 +308,15 @@ enum wb_status wb_swept_contact_create(struct wb_swept_contact **out,
                        n_wires, n_stations, spacing, MAX_WIRES, MAX_STATIONS);
     WB_TRY(check_settings(settings));
     WB_TRY(wb_swept_choose_instructions(&instructions, settings->instructions));
-    for (int w = 0; w < n_wires; w++) {
+    for (int w = 0; w < n_wires; w++)
         WB_TRY(check_wire(&wires[w], w));
-        n_surface += wires[w].n_surface;
-    }
     struct wb_swept_contact *const c = wb_memory_new(1, sizeof *c);
     c->settings = *settings;
     c->settings.instructions = instructions;
     c->kernel = kernels[instructions][settings->double_precision];
     c->spacing = spacing;
     size_model(c, n_wires, n_stations);
-    allocate(c, n_surface);
-    point_at_memory(c);
-    const enum wb_status status = take_wires(c, wires);
+    const enum wb_status status = allocate(c, wires);
     if (status != WB_OK) {
         wb_swept_contact_destroy(c);
         return status;
@@ -630,18 +606,12 @@ static void add_pair(struct wb_swept_contact *contact, int a, int b)
 static void list_sides(struct wb_swept_contact *contact)
 {
     const struct wb_swept_contact_model *m = &contact->model;
-    int n = 0;
 
-    for (int w = 0; w < m->n_wires; w++) {
-        m->wire[w].side = contact->side_memory + n;
+    for (int w = 0; w < m->n_wires; w++)
         m->wire[w].n_sides = 0;
-        for (int p = 0; p < m->n_pairs; p++) {
-            for (int side = 0; side < 2; side++) {
-                if (m->pair[p].wire[side] == w)
-                    m->wire[w].side[m->wire[w].n_sides++] = 2 * p + side;
-            }
-        }
-        n += m->wire[w].n_sides;
+    for (int i = 0; i < 2 * m->n_pairs; i++) {
+        struct wb_swept_contact_frames *wire = &m->wire[m->pair[i / 2].wire[i % 2]];
+        wire->side[wire->n_sides++] = i;
     }
 }
 
@@ -871,7 +841,7 @@ void wb_swept_contact_get_pair(const struct wb_swept_contact *contact, int pair,
 void wb_swept_contact_visit(struct wb_swept_contact *contact, struct wb_checkpoint *checkpoint)
 {
     struct wb_swept_contact_model *m = &contact->model;
-    const size_t wires = (size_t)m->n_wires, stations = (size_t)m->n_stations;
+    const size_t searched = 3 * (size_t)m->n_wires * (size_t)m->n_stations;
     const size_t stride = (size_t)m->stride, row = (size_t)m->row;
     const size_t loads = real_size(contact) * (WB_SWEPT_CONTACT_LOAD * row - 2 * stride);
 
@@ -879,12 +849,15 @@ void wb_swept_contact_visit(struct wb_swept_contact *contact, struct wb_checkpoi
     wb_checkpoint_visit_member(checkpoint, contact, step);
     wb_checkpoint_visit_member(checkpoint, m, started);
     wb_checkpoint_visit_member(checkpoint, m, n_pairs);
-    wb_checkpoint_visit(checkpoint, "searched", contact->searched,
-                        wires * 3 * stations * sizeof(double));
-    wb_checkpoint_visit(checkpoint, "centre", contact->centre_memory,
-                        wires * 3 * row * sizeof(double));
-    wb_checkpoint_visit(checkpoint, "fixed", contact->fixed_memory,
-                        wires * WB_SWEPT_CONTACT_FIXED * stride * sizeof(double));
+    wb_checkpoint_visit(checkpoint, "searched", contact->searched, searched * sizeof(double));
+    for (int w = 0; w < m->n_wires; w++) {
+        wb_checkpoint_enter(checkpoint, "wire %d", w + 1);
+        wb_checkpoint_visit(checkpoint, "centre", m->wire[w].centre,
+                            (3 * row - stride) * sizeof(double));
+        wb_checkpoint_visit(checkpoint, "fixed", m->wire[w].fixed,
+                            WB_SWEPT_CONTACT_FIXED * stride * sizeof(double));
+        wb_checkpoint_leave(checkpoint);
+    }
     for (int p = 0; p < contact->most_pairs; p++) {
         struct wb_swept_contact_pair_rows *pair = &m->pair[p];
         wb_checkpoint_enter(checkpoint, "pair %d", p + 1);
