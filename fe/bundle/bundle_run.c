@@ -16,7 +16,6 @@
 #include "base/version.h"
 #include "fe/bundle/bundle_parts.h"
 #include "fe/model/model_inputs.h"
-#include "fe/swept/swept_hex.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "bundle"
@@ -167,8 +166,8 @@ static void identify(const struct run *r, char text[MAX_IDENTITY])
              "%s precision, %s, wirebench %s, program %.12s",
              m->name, mesh, hash, r->result->n_shape,
              wb_bundle_parts_of(m, mesh, r->options.threads),
-             m->run.double_precision ? "double" : "single", wb_swept_hex_best_instructions(),
-             wb_version_revision(), r->program);
+             m->run.double_precision ? "double" : "single",
+             wb_swept_instructions_name(WB_SWEPT_BEST), wb_version_revision(), r->program);
 }
 
 /* Saves or restores the contents of the result; its memory stays. */

@@ -298,13 +298,6 @@ void *wb_swept_cohesion_data(struct wb_swept_cohesion *cohesion, size_t *bytes)
     return cohesion->damage;
 }
 
-void wb_swept_cohesion_reset(struct wb_swept_cohesion *cohesion)
-{
-    memset(cohesion->damage, 0,
-           (size_t)cohesion->n_strips * LANES *
-               wb_swept_kernel_real_size(cohesion->tape_model->double_precision));
-}
-
 void wb_swept_cohesion_add_forces(struct wb_swept_cohesion *cohesion,
                                   const struct wb_swept_cohesion_fields *fields, int first, int end,
                                   struct wb_swept_cohesion_sums *sums)

@@ -35,7 +35,6 @@
  * and after them. Rows of a wire: */
 enum {
     WB_SWEPT_CONTACT_CENTRE = 0, /* c, with guards */
-    WB_SWEPT_CONTACT_CENTRES = 3,
 
     WB_SWEPT_CONTACT_BEFORE = 0,  /* c of the previous step */
     WB_SWEPT_CONTACT_P = 3,       /* p, then q */

@@ -61,13 +61,14 @@ static enum wb_status make_table(struct wb_swept_hex *hex)
 }
 
 static void fill_row(const struct wb_swept_hex_model *m, const struct wb_swept_quad *quad,
-                     const double (*at)[2], double *row)
+                     double *row)
 {
     const double mu = wb_material_shear_modulus(&m->material), h = m->element_length,
                  volume = quad->area * h;
     const double kappa =
         m->material.youngs_modulus / (3.0 * (1.0 - 2.0 * m->material.poissons_ratio));
     const double along = m->hourglass * m->material.youngs_modulus * quad->area / h;
+    const double(*const at)[2] = quad->corner;
 
     for (int i = 0; i < 2; i++) {
         row[WB_SWEPT_HEX_B + 2 * i] = 0.5 * quad->gradient[i][2];
@@ -100,11 +101,8 @@ static void make_constants(struct wb_swept_hex *hex)
     hex->rows = wb_memory_take(&hex->memory, count, sizeof *hex->rows);
     for (int e = 0; e < section->n_quads; e++) {
         struct wb_swept_quad quad;
-        double at[4][2];
         wb_swept_section_quad(section, e, &quad);
-        for (int a = 0; a < 4; a++)
-            memcpy(at[a], section->node[section->quad[e][a]], sizeof at[a]);
-        fill_row(&hex->model, &quad, (const double(*)[2])at, hex->rows + e * CONSTANTS);
+        fill_row(&hex->model, &quad, hex->rows + e * CONSTANTS);
     }
     hex->constants =
         wb_swept_kernel_convert(&hex->memory, hex->model.double_precision, hex->rows, count);
@@ -241,16 +239,6 @@ int wb_swept_hex_blocks(const struct wb_swept_hex *hex)
     return hex->numbers.layout.stride / WB_SWEPT_LANES;
 }
 
-const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex)
-{
-    return wb_swept_instructions_name(hex->model.instructions);
-}
-
-const char *wb_swept_hex_best_instructions(void)
-{
-    return wb_swept_instructions_name(WB_SWEPT_BEST);
-}
-
 void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double stiffness[4])
 {
     const double *row = hex->rows + quad * CONSTANTS;
@@ -288,11 +276,6 @@ void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes)
 {
     *bytes = state->history_size * real_size(state->hex);
     return state->history;
-}
-
-void wb_swept_hex_state_reset(struct wb_swept_hex_state *state)
-{
-    memset(state->history, 0, state->history_size * real_size(state->hex));
 }
 
 static void find_forces(struct wb_swept_hex_state *state, const struct wb_swept_hex_fields *fields,
@@ -333,15 +316,15 @@ void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
     find_forces(state, fields, state->hex->first_added, &(struct wb_swept_range){first, end}, sums);
 }
 
-double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int quad, int element,
-                                   int point)
+double wb_swept_hex_history(const struct wb_swept_hex_state *state, int quad, int element,
+                            int point, int component)
 {
     const struct wb_swept_hex *hex = state->hex;
     const size_t block = (size_t)(element / WB_SWEPT_LANES);
     const size_t place =
         (block * (size_t)hex->numbers.n_quads + (size_t)quad) * (size_t)hex->n_points +
         (size_t)point;
-    const size_t at = (place * WB_SWEPT_HEX_KERNEL_HISTORY + 5) * WB_SWEPT_LANES +
+    const size_t at = (place * WB_SWEPT_HEX_KERNEL_HISTORY + (size_t)component) * WB_SWEPT_LANES +
                       (size_t)(element % WB_SWEPT_LANES);
 
     return wb_swept_kernel_get(hex->model.double_precision, state->history, (ptrdiff_t)at);
@@ -363,7 +346,7 @@ double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)
                 two_mu;
             double density = 0.0;
             for (int j = hex->numbers.counted.first; j < hex->numbers.counted.end; j++) {
-                const double p = wb_swept_hex_plastic_strain(state, e, j, q);
+                const double p = wb_swept_hex_history(state, e, j, q, WB_SWEPT_HEX_ACCUMULATED);
                 if (p > 0.0)
                     density += p * wb_hardening_mean_stress(m, p);
             }
@@ -375,15 +358,14 @@ double wb_swept_hex_plastic_work(const struct wb_swept_hex_state *state)
 
 /* Sum of weight (y - mean)^2 over the points, and the corresponding moment of the three hourglass
  * fields for one point: the means of xi^2 and eta^2 are 1/3, that of (xi eta)^2 is 1/9. */
-static double varying_moment(const struct wb_swept_section *section, int e,
-                             const struct wb_swept_quad *quad, double mean,
+static double varying_moment(const struct wb_swept_quad *quad, double mean,
                              enum wb_swept_hex_formulation formulation)
 {
     double points = 0.0, y[4];
 
     for (int a = 0; a < 4; a++) {
         points += quad->weight[a] * (quad->at[a][0] - mean) * (quad->at[a][0] - mean);
-        y[a] = 0.25 * section->node[section->quad[e][a]][0];
+        y[a] = 0.25 * quad->corner[a][0];
     }
     if (formulation == WB_SWEPT_HEX_FOUR_POINTS)
         return points;
@@ -411,8 +393,7 @@ static double second_moment(const struct wb_swept_section *section,
         wb_swept_section_quad(section, e, &quad);
         for (int q = 0; q < 4; q++)
             mean += quad.weight[q] * quad.at[q][0];
-        moment += quad.area *
-                  (mean * mean + factor * varying_moment(section, e, &quad, mean, formulation));
+        moment += quad.area * (mean * mean + factor * varying_moment(&quad, mean, formulation));
     }
     return moment;
 }

@@ -78,9 +78,6 @@ void wb_swept_hex_destroy(struct wb_swept_hex *hex);
 const struct wb_swept_hex_model *wb_swept_hex_get_model(const struct wb_swept_hex *hex);
 struct wb_swept_layout wb_swept_hex_layout(const struct wb_swept_hex *hex);
 int wb_swept_hex_blocks(const struct wb_swept_hex *hex); /* of WB_SWEPT_LANES stations */
-/* Name of the best instruction set that this processor and this build have. */
-const char *wb_swept_hex_best_instructions(void);
-
 /* Stiffnesses of the four hourglass vectors of an element, N/m: that of the section, then the axial
  * ones, xi, eta and xi eta, which are 0 with four points. */
 void wb_swept_hex_hourglass(const struct wb_swept_hex *hex, int quad, double stiffness[4]);
@@ -91,6 +88,14 @@ void wb_swept_hex_state_destroy(struct wb_swept_hex_state *state);
 
 /* State for a checkpoint: `bytes` at the returned address. */
 void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes);
+
+/* A component of the plastic history at a point (0 to 3, or 0) of a section's element: plastic
+ * strain 11, 22, 12, 13, 23, accumulated plastic strain. */
+enum {
+    WB_SWEPT_HEX_ACCUMULATED = 5
+};
+double wb_swept_hex_history(const struct wb_swept_hex_state *state, int quad, int element,
+                            int point, int component);
 
 /* Computes the forces on the nodes (negative derivatives of the energy) at the stations of blocks
  * `first` to `end` - 1, and updates the plastic histories there to the current positions. Forces on

@@ -8,7 +8,6 @@
 #include "fe/swept/swept_private.h"
 
 enum {
-    HISTORY = WB_SWEPT_HEX_KERNEL_HISTORY,
     XX = 0,
     YY,
     ZZ,
@@ -96,29 +95,15 @@ static void vary(const struct element *e, int q, double t[6])
     t[XZ] += 0.5 * wb_vec3_dot(F1, e->F[2]) - e->E[XZ];
 }
 
-/* A component of the history at a point. */
-static double kept(const struct wb_swept_hex_model *m, const void *history, size_t point,
-                   int element, int component)
-{
-    const size_t at =
-        (point * HISTORY + (size_t)component) * WB_SWEPT_LANES + (size_t)(element % WB_SWEPT_LANES);
-
-    return wb_swept_kernel_get(m->double_precision, history, (ptrdiff_t)at);
-}
-
-void wb_swept_hex_stress_find(const struct wb_swept_hex *hex, struct wb_swept_hex_state *state,
-                              const double *position, int quad, int element,
-                              struct wb_swept_hex_stress *out)
+void wb_swept_hex_stress_find(const struct wb_swept_hex *hex,
+                              const struct wb_swept_hex_state *state, const double *position,
+                              int quad, int element, struct wb_swept_hex_stress *out)
 {
     static const int place[5] = {XX, YY, XY, XZ, YZ}; /* components stored in the history */
     const struct wb_swept_hex_model *m = wb_swept_hex_get_model(hex);
     const double nu = m->material.poissons_ratio, E = m->material.youngs_modulus;
     const double two_mu = E / (1.0 + nu), kappa = E / (3.0 * (1.0 - 2.0 * nu));
     const int n = wb_swept_hex_stress_points(hex);
-    const size_t place_of_quad =
-        (size_t)(element / WB_SWEPT_LANES) * (size_t)m->section->n_quads + (size_t)quad;
-    size_t bytes;
-    const void *history = wb_swept_hex_state_data(state, &bytes);
     struct element e;
 
     find_gradient(&e, hex, position, quad, element);
@@ -126,18 +111,17 @@ void wb_swept_hex_stress_find(const struct wb_swept_hex *hex, struct wb_swept_he
     /* Kirchhoff stress over the change of volume. */
     const double per_volume = exp(-e.trace);
     for (int q = 0; q < n; q++) {
-        const size_t point = place_of_quad * (size_t)n + (size_t)q;
         double t[6];
         for (int i = 0; i < 6; i++)
             t[i] = e.L[i];
         if (n > 1)
             vary(&e, q, t);
         for (int i = 0; i < 5; i++)
-            t[place[i]] -= kept(m, history, point, element, i);
+            t[place[i]] -= wb_swept_hex_history(state, quad, element, q, i);
         t[ZZ] = -t[XX] - t[YY];
         for (int i = 0; i < 6; i++)
             out[q].stress[i] = per_volume * (two_mu * t[i] + (i <= ZZ ? kappa * e.trace : 0.0));
-        out[q].plastic = kept(m, history, point, element, 5);
+        out[q].plastic = wb_swept_hex_history(state, quad, element, q, WB_SWEPT_HEX_ACCUMULATED);
     }
 }
 

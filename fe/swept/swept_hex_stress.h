@@ -16,10 +16,10 @@ struct wb_swept_hex_stress {
 };
 
 /* Stresses at the points of the section's element `quad`, `element` along the wire, into `out`,
- * which has room for 4. `state` is not changed. */
-void wb_swept_hex_stress_find(const struct wb_swept_hex *hex, struct wb_swept_hex_state *state,
-                              const double *position, int quad, int element,
-                              struct wb_swept_hex_stress *out);
+ * which has room for 4. */
+void wb_swept_hex_stress_find(const struct wb_swept_hex *hex,
+                              const struct wb_swept_hex_state *state, const double *position,
+                              int quad, int element, struct wb_swept_hex_stress *out);
 
 /* Stresses at the four corners of the section: bilinear through the points, or the single
  * point's. */

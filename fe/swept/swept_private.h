@@ -19,18 +19,9 @@ WB_MUST_CHECK enum wb_status wb_swept_section_init(struct wb_swept_section *sect
 
 /* --- hexahedra --- */
 
-const char *wb_swept_hex_instructions(const struct wb_swept_hex *hex);
-
 /* As wb_swept_hex_add_forces(), but overwrites the forces of all nodes. */
 void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
                          int first, int end, struct wb_swept_hex_sums *sums);
-
-/* Returns to the virgin state. */
-void wb_swept_hex_state_reset(struct wb_swept_hex_state *state);
-
-/* Accumulated plastic strain at a point (0 to 3, or 0) of a section's element. */
-double wb_swept_hex_plastic_strain(const struct wb_swept_hex_state *state, int quad, int element,
-                                   int point);
 
 /* Number of points of an element with stresses: 4 Gauss points in the section, or 1. */
 int wb_swept_hex_stress_points(const struct wb_swept_hex *hex);
@@ -77,15 +68,10 @@ void wb_swept_contact_get_pair(const struct wb_swept_contact *contact, int pair,
 
 /* --- tapes --- */
 
-const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape);
-
 /* Accumulated plastic strain of an element (between nodes `element` and the next, stations `along`
  * and the next) at a point through the thickness, from the inside. */
 double wb_swept_tape_plastic_strain(const struct wb_swept_tape_state *state, int element, int along,
                                     int point);
-
-/* Returns to the state after creation: no damage. */
-void wb_swept_cohesion_reset(struct wb_swept_cohesion *cohesion);
 
 /* Bonded area, m2. */
 double wb_swept_cohesion_area(const struct wb_swept_cohesion *cohesion);

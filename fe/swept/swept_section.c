@@ -73,7 +73,7 @@ void wb_swept_section_quad(const struct wb_swept_section *section, int quad,
                            struct wb_swept_quad *out)
 {
     const double root = 1.0 / sqrt(3.0);
-    double at[4][2];
+    double(*const at)[2] = out->corner;
 
     memset(out, 0, sizeof *out);
     for (int a = 0; a < 4; a++)

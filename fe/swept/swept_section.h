@@ -25,6 +25,7 @@ struct wb_swept_section {
 
 /* Integrals over a quadrilateral, for its elements' matrices. */
 struct wb_swept_quad {
+    double corner[4][2];    /* y, z, m */
     double area;            /* m2 */
     double mean[4];         /* mean of N_a over the area */
     double gradient[2][4];  /* means of dN_a/dy and dN_a/dz, 1/m */

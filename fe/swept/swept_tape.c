@@ -83,6 +83,35 @@ static double get(const struct wb_swept_tape *tape, const void *numbers, size_t 
     return wb_swept_kernel_get(tape->model.double_precision, numbers, (ptrdiff_t)at);
 }
 
+/* Index of a constant of an element (between nodes `element` and the next, stations `along` and the
+ * next) in the reference state. */
+static size_t reference_at(const struct wb_swept_tape *tape, int element, int along, int which)
+{
+    const size_t place =
+        (size_t)(along / LANES) * (size_t)tape->numbers.n_elements + (size_t)element;
+
+    return (place * WB_SWEPT_TAPE_REFERENCE + (size_t)which) * LANES + (size_t)(along % LANES);
+}
+
+static double constant(const struct wb_swept_tape *tape, int element, int along, int which)
+{
+    return get(tape, tape->reference, reference_at(tape, element, along, which));
+}
+
+/* A component of an element's history. */
+static double kept(const struct wb_swept_tape_state *state, int element, int along, int point,
+                   int component)
+{
+    const struct wb_swept_tape_kernel_model *m = &state->tape->numbers;
+    const size_t place =
+        ((size_t)(along / LANES) * (size_t)m->n_elements + (size_t)element) * (size_t)m->n_points +
+        (size_t)point;
+
+    return get(state->tape, state->history,
+               (place * WB_SWEPT_TAPE_HISTORY + (size_t)component) * LANES +
+                   (size_t)(along % LANES));
+}
+
 /* --- the reference state --- */
 
 static bool is_convex(const struct element *e)
@@ -194,16 +223,17 @@ static void lump(struct wb_swept_tape *tape, int k, int j, const struct element 
 
 static void fill_reference(struct wb_swept_tape *tape, int k, int j, const struct element *element)
 {
-    const size_t place = (size_t)(j / LANES) * (size_t)tape->numbers.n_elements + (size_t)k;
-    const size_t at = place * WB_SWEPT_TAPE_REFERENCE * LANES + (size_t)(j % LANES);
+    const double constants[] = {
+        [WB_SWEPT_TAPE_B11] = element->B[0],
+        [WB_SWEPT_TAPE_B21] = element->B[1],
+        [WB_SWEPT_TAPE_B22] = element->B[2],
+        [WB_SWEPT_TAPE_C1] = element->hourglass[0],
+        [WB_SWEPT_TAPE_C2] = element->hourglass[1],
+        [WB_SWEPT_TAPE_VOLUME] = element->area * tape->model.thickness,
+    };
 
-    for (int i = 0; i < 3; i++)
-        put(tape, tape->reference, at + (size_t)(WB_SWEPT_TAPE_B11 + i) * LANES, element->B[i]);
-    for (int i = 0; i < 2; i++)
-        put(tape, tape->reference, at + (size_t)(WB_SWEPT_TAPE_C1 + i) * LANES,
-            element->hourglass[i]);
-    put(tape, tape->reference, at + (size_t)WB_SWEPT_TAPE_VOLUME * LANES,
-        element->area * tape->model.thickness);
+    for (int i = 0; i <= WB_SWEPT_TAPE_VOLUME; i++)
+        put(tape, tape->reference, reference_at(tape, k, j, i), constants[i]);
 }
 
 /* Directors are projected into the plane of their section, so that the surface they point to is in
@@ -415,11 +445,6 @@ int wb_swept_tape_elements(const struct wb_swept_tape *tape)
     return tape->numbers.n_elements;
 }
 
-const char *wb_swept_tape_instructions(const struct wb_swept_tape *tape)
-{
-    return wb_swept_instructions_name(tape->model.instructions);
-}
-
 const double *wb_swept_tape_directors(const struct wb_swept_tape *tape)
 {
     return tape->director;
@@ -493,13 +518,7 @@ void wb_swept_tape_forces(struct wb_swept_tape_state *state,
 double wb_swept_tape_plastic_strain(const struct wb_swept_tape_state *state, int element, int along,
                                     int point)
 {
-    const struct wb_swept_tape_kernel_model *m = &state->tape->numbers;
-    const size_t place =
-        ((size_t)(along / LANES) * (size_t)m->n_elements + (size_t)element) * (size_t)m->n_points +
-        (size_t)point;
-
-    return get(state->tape, state->history,
-               (place * WB_SWEPT_TAPE_HISTORY + 3) * LANES + (size_t)(along % LANES));
+    return kept(state, element, along, point, 3);
 }
 
 double wb_swept_tape_plastic_work(const struct wb_swept_tape_state *state)
@@ -512,16 +531,13 @@ double wb_swept_tape_plastic_work(const struct wb_swept_tape_state *state)
 
     for (int k = 0; k < m->n_elements; k++) {
         for (int j = counted.first; j < counted.end; j++) {
-            const size_t place = (size_t)(j / LANES) * (size_t)m->n_elements + (size_t)k;
-            const size_t at = (place * WB_SWEPT_TAPE_REFERENCE + WB_SWEPT_TAPE_VOLUME) * LANES +
-                              (size_t)(j % LANES);
             double density = 0.0;
             for (int q = 0; q < m->n_points; q++) {
                 const double p = wb_swept_tape_plastic_strain(state, k, j, q);
                 if (p > 0.0)
                     density += m->weight[q] * p * wb_hardening_mean_stress(law, p);
             }
-            work += density * get(tape, tape->reference, at);
+            work += density * constant(tape, k, j, WB_SWEPT_TAPE_VOLUME);
         }
     }
     return work;
@@ -733,15 +749,6 @@ int wb_swept_tape_stress_points(const struct wb_swept_tape *tape)
     return tape->numbers.n_points;
 }
 
-static double constant(const struct wb_swept_tape *tape, int element, int along, int which)
-{
-    const size_t place =
-        (size_t)(along / LANES) * (size_t)tape->numbers.n_elements + (size_t)element;
-
-    return get(tape, tape->reference,
-               (place * WB_SWEPT_TAPE_REFERENCE + (size_t)which) * LANES + (size_t)(along % LANES));
-}
-
 /* Derivatives of a field along the element's frame. */
 static void find_gradient(const struct wb_swept_tape *tape, const double *field, int element,
                           int along, double by[2][3])
@@ -805,33 +812,27 @@ static struct symmetric logarithm(const struct symmetric *E)
     return (struct symmetric){0.5 * (f[0] + f[1]), turn * E->difference, turn * E->both};
 }
 
-void wb_swept_tape_stress_find(const struct wb_swept_tape *tape, struct wb_swept_tape_state *state,
-                               const double *position, const double *director, int element,
-                               int along,
+void wb_swept_tape_stress_find(const struct wb_swept_tape *tape,
+                               const struct wb_swept_tape_state *state, const double *position,
+                               const double *director, int element, int along,
                                struct wb_swept_tape_stress out[WB_SWEPT_TAPE_STRESS_MOST])
 {
     const struct wb_swept_tape_kernel_model *m = &tape->numbers;
-    const size_t place = (size_t)(along / LANES) * (size_t)m->n_elements + (size_t)element;
-    size_t bytes;
-    const void *history = wb_swept_tape_state_data(state, &bytes);
     struct symmetric E, K;
 
     find_strains(tape, position, director, element, along, &E, &K);
     for (int q = 0; q < m->n_points; q++) {
-        const size_t at =
-            (place * (size_t)m->n_points + (size_t)q) * WB_SWEPT_TAPE_HISTORY * LANES +
-            (size_t)(along % LANES);
         const double z = m->z[q];
         const struct symmetric here = {E.mean + z * K.mean, E.difference + z * K.difference,
                                        E.both + z * K.both};
         const struct symmetric all = logarithm(&here);
-        const double mean = m->sum_modulus * (all.mean - get(tape, history, at));
+        const double mean = m->sum_modulus * (all.mean - kept(state, element, along, q, 0));
         const double difference =
-            m->difference_modulus * (all.difference - get(tape, history, at + LANES));
+            m->difference_modulus * (all.difference - kept(state, element, along, q, 1));
         out[q].stress[0] = mean + difference;
         out[q].stress[1] = mean - difference;
-        out[q].stress[2] = m->difference_modulus * (all.both - get(tape, history, at + 2 * LANES));
-        out[q].plastic = get(tape, history, at + 3 * LANES);
+        out[q].stress[2] = m->difference_modulus * (all.both - kept(state, element, along, q, 2));
+        out[q].plastic = kept(state, element, along, q, 3);
     }
 }
 

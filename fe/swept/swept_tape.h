@@ -138,10 +138,10 @@ struct wb_swept_tape_stress {
 int wb_swept_tape_stress_points(const struct wb_swept_tape *tape);
 
 /* Stresses of the element between nodes `element` and the next of the ring, stations `along` and
- * the next, at its points from the inside. `state` is not changed. */
-void wb_swept_tape_stress_find(const struct wb_swept_tape *tape, struct wb_swept_tape_state *state,
-                               const double *position, const double *director, int element,
-                               int along,
+ * the next, at its points from the inside. */
+void wb_swept_tape_stress_find(const struct wb_swept_tape *tape,
+                               const struct wb_swept_tape_state *state, const double *position,
+                               const double *director, int element, int along,
                                struct wb_swept_tape_stress out[WB_SWEPT_TAPE_STRESS_MOST]);
 
 /* Von Mises stress of plane stress, Pa. */

@@ -89,14 +89,10 @@ static void read_node(const struct wb_swept_tape_contact *c, const double *field
         out[i] = field[(size_t)(3 * k + i) * stride + (size_t)j];
 }
 
-static double *centre_row(const struct wb_swept_tape_contact *c, int wire, int i)
+/* Component `i` of a wire's centre or axis, at all stations. */
+static double *row_of(const struct wb_swept_tape_contact *c, double *rows, int wire, int i)
 {
-    return c->centre + (size_t)(3 * wire + i) * (size_t)layout_of(c)->n_stations;
-}
-
-static double *axis_row(const struct wb_swept_tape_contact *c, int wire, int i)
-{
-    return c->axis + (size_t)(3 * wire + i) * (size_t)layout_of(c)->n_stations;
+    return rows + (size_t)(3 * wire + i) * (size_t)layout_of(c)->n_stations;
 }
 
 /* Tangents to the centre lines, m per station. */
@@ -105,8 +101,8 @@ static void find_axes(struct wb_swept_tape_contact *c)
     const int last = layout_of(c)->n_stations - 1;
 
     for (int row = 0; row < 3 * c->n_wires; row++) {
-        const double *centre = centre_row(c, row / 3, row % 3);
-        double *axis = axis_row(c, row / 3, row % 3);
+        const double *centre = row_of(c, c->centre, row / 3, row % 3);
+        double *axis = row_of(c, c->axis, row / 3, row % 3);
         for (int j = 0; j <= last; j++) {
             const int before = j > 0 ? j - 1 : 0, after = j < last ? j + 1 : last;
             axis[j] = (centre[after] - centre[before]) / (after - before);
@@ -122,7 +118,7 @@ static enum wb_status find_centres(struct wb_swept_tape_contact *c, const double
     for (int w = 0; w < c->n_wires; w++) {
         const struct surface *surface = &c->surface[w];
         for (int i = 0; i < 3; i++) {
-            double *row = centre_row(c, w, i);
+            double *row = row_of(c, c->centre, w, i);
             for (int j = 0; j < layout->n_stations; j++)
                 row[j] = 0.0;
             for (int s = 0; s < surface->n; s++) {
@@ -151,8 +147,8 @@ static bool find_place_along(const struct wb_swept_tape_contact *c, const double
     double from[3];
 
     for (int i = 0; i < 3; i++) {
-        axis[i] = axis_row(c, near->wire, i)[j];
-        from[i] = x[i] - centre_row(c, near->wire, i)[j];
+        axis[i] = row_of(c, c->axis, near->wire, i)[j];
+        from[i] = x[i] - row_of(c, c->centre, near->wire, i)[j];
     }
     const double length = wb_vec3_dot(axis, axis), shift = wb_vec3_dot(from, axis) / length;
     const double slack = 0.01; /* tolerance at the ends, in stations */
@@ -164,7 +160,7 @@ static bool find_place_along(const struct wb_swept_tape_contact *c, const double
     near->station = whole - j;
     near->along = at - whole;
     for (int i = 0; i < 3; i++) {
-        const double *row = centre_row(c, near->wire, i);
+        const double *row = row_of(c, c->centre, near->wire, i);
         centre[i] = (1.0 - near->along) * row[whole] + near->along * row[whole + 1];
         axis[i] /= sqrt(length);
     }
@@ -234,8 +230,8 @@ static bool may_be_near(const struct wb_swept_tape_contact *c, const double x[3]
     double from[3], axis[3];
 
     for (int i = 0; i < 3; i++) {
-        from[i] = x[i] - centre_row(c, w, i)[j];
-        axis[i] = axis_row(c, w, i)[j];
+        from[i] = x[i] - row_of(c, c->centre, w, i)[j];
+        axis[i] = row_of(c, c->axis, w, i)[j];
     }
     const double along = wb_vec3_dot(from, axis),
                  shift_square = along * along / wb_vec3_dot(axis, axis);

@@ -198,8 +198,9 @@ static bool print_row(const struct wb_swept_hex_model *model, double twin)
         const double kernel = time_kernel(&b, false), step = time_kernel(&b, true);
         printf("%-12s %-7s %-9s %8.2f %11.2f %9.0f %12.0f %16.4f\n",
                model->formulation == WB_SWEPT_HEX_ONE_POINT ? "one point" : "2x2x1",
-               model->double_precision ? "double" : "float", wb_swept_hex_instructions(b.hex),
-               kernel, step, bytes_of(&b), bytes_with_step(&b), kernel / twin);
+               model->double_precision ? "double" : "float",
+               wb_swept_instructions_name(wb_swept_hex_get_model(b.hex)->instructions), kernel,
+               step, bytes_of(&b), bytes_with_step(&b), kernel / twin);
     }
     bench_destroy(&b);
     return good;

@@ -176,7 +176,9 @@ static void instruction_sets_and_precisions_agree(void **unused)
                 continue;
             struct pair p = shaken(&settings, is_double, way);
             if (way > WB_SWEPT_BASELINE)
-                assert_string_equal(wb_swept_tape_instructions(p.tape.tape), feature[way]);
+                assert_string_equal(
+                    wb_swept_instructions_name(wb_swept_tape_get_model(p.tape.tape)->instructions),
+                    feature[way]);
             const struct wb_swept_cohesion_sums sums = pair_forces(&p);
             assert_close_relative(sums.stored, expected.stored, is_double ? 1e-12 : 1e-5);
             assert_close_relative(sums.dissipated, expected.dissipated, is_double ? 1e-12 : 1e-4);

@@ -96,8 +96,9 @@ static void forces_equal_the_twin_at_small_strain(void **unused)
             assert_true(compare_with_twin(&body, &twin) < 2e-5);
         }
         for (int j = 0; j < 5; j++)
-            assert_close_relative(wb_swept_hex_plastic_strain(body.state, 2, j, 0),
-                                  twin.points[4 * (4 * j + 2)].accumulated, 1e-3);
+            assert_close_relative(
+                wb_swept_hex_history(body.state, 2, j, 0, WB_SWEPT_HEX_ACCUMULATED),
+                twin.points[4 * (4 * j + 2)].accumulated, 1e-3);
         assert_true(twin.points[8].accumulated > 3e-4);
         twin_destroy(&twin);
         swept_body_destroy(&body);
@@ -200,7 +201,7 @@ static void rigid_motion_causes_no_force(void **unused)
             assert_true(sums.stored < 1e-24 * scale * 0.02);
         }
         for (int q = 0; q < 12; q++)
-            assert_true(wb_swept_hex_plastic_strain(body.state, q, 3, 0) == 0.0);
+            assert_true(wb_swept_hex_history(body.state, q, 3, 0, WB_SWEPT_HEX_ACCUMULATED) == 0.0);
         swept_body_destroy(&body);
     }
     wb_swept_section_release(&section);
@@ -306,8 +307,9 @@ static void bar_in_tension_follows_the_power_law(void **unused)
                 double lateral = exp(-m->poissons_ratio * stress / m->youngs_modulus - 0.5 * p);
                 const double found = bar_stress(&body, stretch, &lateral) * stretch;
                 worst[f % 2] = fmax(worst[f % 2], fabs(found / stress - 1.0));
-                assert_close_relative(wb_swept_hex_plastic_strain(body.state, 0, 0, 0), p,
-                                      2e-5 + 1e-9 / p);
+                assert_close_relative(
+                    wb_swept_hex_history(body.state, 0, 0, 0, WB_SWEPT_HEX_ACCUMULATED), p,
+                    2e-5 + 1e-9 / p);
             }
             swept_body_destroy(&body);
         }
@@ -361,7 +363,8 @@ static void all_instructions_agree(void **unused)
                         assert_true(swept_force(&body, row / 3, row % 3, j) == 0.0);
                 }
                 for (int j = sizes[s]; j < l->stride; j++)
-                    assert_true(wb_swept_hex_plastic_strain(body.state, 5, j, 0) == 0.0);
+                    assert_true(
+                        wb_swept_hex_history(body.state, 5, j, 0, WB_SWEPT_HEX_ACCUMULATED) == 0.0);
                 swept_body_destroy(&body);
             }
             free(plain);
@@ -449,9 +452,11 @@ static void work_is_stored_or_plastic(void **unused)
             change[i] = 1e-5 * (2.0 * test_random(&seed) - 1.0);
         double work = 0.0, before = 0.0, balance[2];
         struct wb_swept_hex_sums sums;
+        size_t bytes;
         for (int fineness = 0; fineness < 2; fineness++) {
             const int steps = 200 << fineness;
-            wb_swept_hex_state_reset(body.state);
+            void *const history = wb_swept_hex_state_data(body.state, &bytes);
+            memset(history, 0, bytes);
             work = before = 0.0;
             for (int step = 0; step <= steps; step++) {
                 const double s = sin(4.0 * step / steps);

@@ -98,7 +98,8 @@ static double energy_of(struct swept_body *body, int *off, double *most_plastic)
             struct wb_swept_hex_stress out[4];
             wb_swept_hex_stress_find(body->hex, body->state, body->position, e, j, out);
             for (int q = 0; q < n; q++) {
-                const double p = wb_swept_hex_plastic_strain(body->state, e, j, q);
+                const double p =
+                    wb_swept_hex_history(body->state, e, j, q, WB_SWEPT_HEX_ACCUMULATED);
                 const double flow =
                     m->material.yield_stress +
                     m->material.strength_coefficient * pow(p, m->material.hardening_exponent);
