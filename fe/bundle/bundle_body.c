@@ -11,8 +11,7 @@
 
 double wb_bundle_body_force(const struct wb_bundle_body *body, size_t at)
 {
-    return body->is_double ? ((const double *)body->force)[at]
-                           : (double)((const float *)body->force)[at];
+    return wb_swept_kernel_get(body->is_double, body->force, (ptrdiff_t)at);
 }
 
 void wb_bundle_body_add_force(struct wb_bundle_body *body, size_t at, double force)
@@ -23,18 +22,14 @@ void wb_bundle_body_add_force(struct wb_bundle_body *body, size_t at, double for
         ((float *)body->force)[at] += (float)force;
 }
 
-size_t wb_bundle_body_force_size(const struct wb_bundle_body *body)
-{
-    return body->is_double ? sizeof(double) : sizeof(float);
-}
-
 static void visit_body(struct wb_bundle_body *body, struct wb_checkpoint *checkpoint)
 {
     const size_t n = wb_swept_size(&body->layout);
 
     wb_checkpoint_visit(checkpoint, "position", body->position, n * sizeof *body->position);
     wb_checkpoint_visit(checkpoint, "velocity", body->velocity, n * sizeof *body->velocity);
-    wb_checkpoint_visit(checkpoint, "force", body->force, n * wb_bundle_body_force_size(body));
+    wb_checkpoint_visit(checkpoint, "force", body->force,
+                        n * wb_swept_kernel_real_size(body->is_double));
 }
 
 /* --- creation --- */
@@ -106,7 +101,7 @@ void wb_bundle_bodies_create_fields(struct wb_bundle_bodies *bodies, struct wb_b
     body->is_double = bodies->model->run.double_precision;
     body->position = wb_swept_take(&bodies->memory, n, sizeof *body->position);
     body->velocity = wb_swept_take(&bodies->memory, n, sizeof *body->velocity);
-    body->force = wb_swept_take(&bodies->memory, n, wb_bundle_body_force_size(body));
+    body->force = wb_swept_take(&bodies->memory, n, wb_swept_kernel_real_size(body->is_double));
 }
 
 /* A straight body: positions of the section points at all stations, including padding. */
@@ -153,7 +148,7 @@ static bool is_large(const struct wb_bundle_bodies *bodies)
 
     for (int w = 0; w < bodies->n_wires; w++)
         bytes += wb_swept_size(&bodies->wire[w].layout) *
-                 (2 * sizeof(double) + wb_bundle_body_force_size(&bodies->wire[w]));
+                 (2 * sizeof(double) + wb_swept_kernel_real_size(bodies->wire[w].is_double));
     return bytes > near;
 }
 

@@ -16,6 +16,7 @@
 #include "fe/model/bundle_model.h"
 #include "fe/swept/swept.h"
 #include "fe/swept/swept_hex.h"
+#include "fe/swept/swept_kernel.h"
 #include "fe/swept/swept_step.h"
 #include "fe/swept/swept_tape.h"
 
@@ -36,10 +37,9 @@ struct wb_bundle_body {
     double start;            /* m: mean height of the section, by unscaled masses */
 };
 
-/* The force at an index of the field, N; the size of one force in bytes. */
+/* The force at an index of the field, N. */
 double wb_bundle_body_force(const struct wb_bundle_body *body, size_t at);
 void wb_bundle_body_add_force(struct wb_bundle_body *body, size_t at, double force);
-size_t wb_bundle_body_force_size(const struct wb_bundle_body *body);
 
 /* --- all bodies --- */
 

@@ -329,7 +329,7 @@ static void count_tip_work(struct wb_bundle_part *part, const struct tip *before
 static void clear_outline(struct wb_bundle_bodies *bodies, int w)
 {
     struct wb_bundle_body *body = &bodies->wire[w];
-    const size_t size = wb_bundle_body_force_size(body);
+    const size_t size = wb_swept_kernel_real_size(body->is_double);
     const int first = wb_swept_hex_first_added(bodies->type[bodies->model->type_of[w]].hex);
     const size_t inside = 3 * (size_t)first * (size_t)body->layout.stride;
 

@@ -304,7 +304,7 @@ static void take_sums(struct wb_bundle_account *whole, const double sum[N_SUMS],
 static void load_state(struct column_buffer *buffer, void *state, size_t bytes,
                        const struct wb_bundle_body *body, struct wb_swept_range range)
 {
-    const size_t size = wb_bundle_body_force_size(body), row = LANES * size;
+    const size_t size = wb_swept_kernel_real_size(body->is_double), row = LANES * size;
     const size_t per_block = bytes / (size_t)(body->layout.stride / LANES);
 
     for (int j = range.first; j < range.end;) {
@@ -329,7 +329,8 @@ static void load(struct wb_bundle_bodies *bodies, struct wb_swept_range range, b
         const struct wb_swept_layout *layout = &body[b]->layout;
         load_field(buffer, body[b]->position, sizeof(double), layout, range);
         load_field(buffer, body[b]->velocity, sizeof(double), layout, range);
-        load_field(buffer, body[b]->force, wb_bundle_body_force_size(body[b]), layout, range);
+        load_field(buffer, body[b]->force, wb_swept_kernel_real_size(body[b]->is_double), layout,
+                   range);
     }
     for (int w = 0; states && w < bodies->n_wires; w++) {
         void *state = wb_swept_hex_state_data(bodies->wire_state[w], &bytes);
