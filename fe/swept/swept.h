@@ -20,6 +20,8 @@
 #ifndef WB_FE_SWEPT_SWEPT_H
 #define WB_FE_SWEPT_SWEPT_H
 
+#include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/memory.h"
@@ -66,6 +68,12 @@ struct wb_swept_wire {
 /* The layout of a body, and the number of entries of its fields. */
 struct wb_swept_layout wb_swept_layout(int n_nodes, int n_stations);
 size_t wb_swept_size(const struct wb_swept_layout *layout);
+
+/* True for a finite number above 0. */
+static inline bool wb_swept_is_positive(double number)
+{
+    return number > 0.0 && isfinite(number);
+}
 
 /* The intersection of a range with 0 to n - 1. */
 struct wb_swept_range wb_swept_range_within(struct wb_swept_range range, int n);

@@ -202,16 +202,14 @@ static enum wb_status check(const struct wb_swept_cohesion_settings *s)
     const double stored = 0.5 * fmax(s->strength * s->strength / s->normal_stiffness,
                                      s->shear_strength * s->shear_strength / s->shear_stiffness);
 
-    if (!(s->normal_stiffness > 0.0 && isfinite(s->normal_stiffness)) ||
-        !(s->shear_stiffness > 0.0 && isfinite(s->shear_stiffness)))
+    if (!wb_swept_is_positive(s->normal_stiffness) || !wb_swept_is_positive(s->shear_stiffness))
         return wb_fail(WB_ERR_ARGUMENT,
                        "cohesion: the normal stiffness is %g Pa/m and the shear stiffness %g Pa/m: "
                        "expected numbers above 0",
                        s->normal_stiffness, s->shear_stiffness);
     if (s->strength == 0.0)
         return WB_OK;
-    if (!(s->strength > 0.0 && isfinite(s->strength)) ||
-        !(s->shear_strength > 0.0 && isfinite(s->shear_strength)))
+    if (!wb_swept_is_positive(s->strength) || !wb_swept_is_positive(s->shear_strength))
         return wb_fail(
             WB_ERR_ARGUMENT,
             "cohesion: the normal strength is %g Pa and the shear strength %g Pa: expected numbers "

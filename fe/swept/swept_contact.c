@@ -724,7 +724,7 @@ enum wb_status wb_swept_contact_add_forces(struct wb_swept_contact *contact,
 {
     const int n = contact->model.n_blocks;
 
-    if (!(time_step > 0.0 && isfinite(time_step)))
+    if (!wb_swept_is_positive(time_step))
         return wb_fail(WB_ERR_ARGUMENT, "contact: time step %g s: expected a number above 0",
                        time_step);
     wb_swept_contact_gather(contact, position, 0, n);

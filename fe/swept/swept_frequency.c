@@ -182,7 +182,7 @@ static void scale_lines(double *K, size_t n, size_t step, const double *roots, i
     }
 }
 
-static enum wb_status largest_eigenvalue(double *K, int n, double *value)
+enum wb_status wb_swept_frequency_largest(double *K, int n, const char *of, double *value)
 {
     double *const values = wb_memory_new((size_t)n, sizeof *values);
     lapack_int found = 0, ignored = 0;
@@ -192,8 +192,8 @@ static enum wb_status largest_eigenvalue(double *K, int n, double *value)
                                            0.0, &found, values, &vector, 1, &ignored);
     *value = values[0];
     free(values);
-    if (info != 0 || found != 1 || !(*value > 0.0 && isfinite(*value)))
-        return wb_fail(WB_ERR_CONVERGENCE, "the eigenvalue solver failed for a layer of the wire");
+    if (info != 0 || found != 1 || !wb_swept_is_positive(*value))
+        return wb_fail(WB_ERR_CONVERGENCE, "the eigenvalue solver failed for %s", of);
     return WB_OK;
 }
 
@@ -208,14 +208,7 @@ enum wb_status wb_swept_frequency_bound(const struct wb_swept_hex *hex, const do
         return wb_fail(WB_ERR_UNSUPPORTED,
                        "the section has %d nodes: frequencies are supported for at most %d",
                        n_nodes, WB_SWEPT_FREQUENCY_MOST_NODES);
-    if (!(selective >= 1.0 && isfinite(selective)))
-        return wb_fail(WB_ERR_ARGUMENT, "selective mass scaling %g: expected 1 or more", selective);
-    for (int k = 0; k < n_nodes; k++) {
-        if (!(node_mass[k] > 0.0 && isfinite(node_mass[k])))
-            return wb_fail(WB_ERR_ARGUMENT,
-                           "node %d has a mass of %g kg/m: expected a number above 0", k,
-                           node_mass[k]);
-    }
+    WB_TRY(wb_swept_step_check_masses(n_nodes, node_mass, selective));
     double *const K = wb_memory_new(n * n + (size_t)n_nodes, sizeof *K);
     double *roots = K + n * n;
     for (int k = 0; k < n_nodes; k++)
@@ -224,7 +217,8 @@ enum wb_status wb_swept_frequency_bound(const struct wb_swept_hex *hex, const do
     scale_lines(K, n, 1, roots, n_nodes, selective);
     scale_lines(K, n, n, roots, n_nodes, selective);
     double value = 0.0;
-    const enum wb_status status = largest_eigenvalue(K, (int)n, &value);
+    const enum wb_status status =
+        wb_swept_frequency_largest(K, (int)n, "a layer of the wire", &value);
     free(K);
     WB_TRY(status);
     *omega = sqrt(value) * (1.0 + 1e-9);

@@ -21,4 +21,9 @@ WB_MUST_CHECK enum wb_status wb_swept_frequency_bound(const struct wb_swept_hex 
                                                       const double *node_mass, double selective,
                                                       double *omega);
 
+/* The largest eigenvalue of a symmetric matrix K (n x n, overwritten), which must be above 0;
+ * otherwise the message names the body that it is `of`. */
+WB_MUST_CHECK enum wb_status wb_swept_frequency_largest(double *K, int n, const char *of,
+                                                        double *value);
+
 #endif

@@ -116,7 +116,7 @@ static enum wb_status check(const struct wb_swept_hex_model *m)
     if (m->n_elements < 1 || m->n_elements > MAX_ELEMENTS)
         return wb_fail(WB_ERR_ARGUMENT, "elements along the wire: %d: expected 1 to %d",
                        m->n_elements, MAX_ELEMENTS);
-    if (!(m->element_length > 0.0 && isfinite(m->element_length)))
+    if (!wb_swept_is_positive(m->element_length))
         return wb_fail(WB_ERR_ARGUMENT, "element length %g m: expected a number above 0",
                        m->element_length);
     if (!(m->hourglass > 0.0 && m->hourglass <= 1.0))
@@ -127,7 +127,7 @@ static enum wb_status check(const struct wb_swept_hex_model *m)
         return wb_fail(
             WB_ERR_UNSUPPORTED,
             "kinematic hardening is not supported by hexahedra; expected isotropic hardening");
-    if (!(material->youngs_modulus > 0.0 && isfinite(material->youngs_modulus)) ||
+    if (!wb_swept_is_positive(material->youngs_modulus) ||
         !(material->poissons_ratio > -1.0 && material->poissons_ratio < 0.5))
         return wb_fail(WB_ERR_ARGUMENT,
                        "wire: Young's modulus %g Pa, Poisson's ratio %g: expected "

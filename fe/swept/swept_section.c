@@ -127,7 +127,7 @@ static bool is_convex(const struct wb_swept_section *section, const int *quad)
         const double *before = section->node[quad[(a + 3) % 4]];
         const double turn = (next[0] - p[0]) * (before[1] - p[1]) - //
                             (next[1] - p[1]) * (before[0] - p[0]);
-        if (!(turn > 0.0 && isfinite(turn)))
+        if (!wb_swept_is_positive(turn))
             return false;
     }
     return true;
@@ -252,7 +252,7 @@ enum wb_status wb_swept_section_init_circle(struct wb_swept_section *section, do
                        "circle: core %d, rings %d: expected an even core from 2 to %d, and 0 to %d "
                        "rings",
                        core, rings, MAX_DENSITY, MAX_DENSITY);
-    if (!(diameter > 0.0 && isfinite(diameter)))
+    if (!wb_swept_is_positive(diameter))
         return wb_fail(WB_ERR_ARGUMENT, "circle: diameter %g m: expected a number above 0",
                        diameter);
     allocate(section, (core + 1) * (core + 1) + 4 * core * rings, core * core + 4 * core * rings,

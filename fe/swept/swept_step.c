@@ -210,6 +210,19 @@ double wb_swept_step_station_mass(const struct wb_swept_step *step, int station)
     return step->total * step->length[station] * step->model.mass_scaling + step->extra[station];
 }
 
+enum wb_status wb_swept_step_check_masses(int n, const double *node_mass, double selective)
+{
+    if (!(selective >= 1.0 && isfinite(selective)))
+        return wb_fail(WB_ERR_ARGUMENT, "selective mass scaling %g: expected 1 or more", selective);
+    for (int k = 0; k < n; k++) {
+        if (!wb_swept_is_positive(node_mass[k]))
+            return wb_fail(WB_ERR_ARGUMENT,
+                           "node %d has a mass of %g kg/m: expected a number above 0", k,
+                           node_mass[k]);
+    }
+    return WB_OK;
+}
+
 static enum wb_status check(const struct wb_swept_step_model *m)
 {
     if (m->layout.n_nodes < 1 || m->layout.n_stations < 2 ||
@@ -218,22 +231,13 @@ static enum wb_status check(const struct wb_swept_step_model *m)
                        "the body has %d nodes, %d stations and a stride of %d: expected at least 1 "
                        "node, at least 2 stations and the stride that belongs to them",
                        m->layout.n_nodes, m->layout.n_stations, m->layout.stride);
-    if (!(m->spacing > 0.0 && isfinite(m->spacing)))
+    if (!wb_swept_is_positive(m->spacing))
         return wb_fail(WB_ERR_ARGUMENT, "station spacing %g m: expected a number above 0",
                        m->spacing);
-    if (!(m->mass_scaling > 0.0 && isfinite(m->mass_scaling)))
+    if (!wb_swept_is_positive(m->mass_scaling))
         return wb_fail(WB_ERR_ARGUMENT, "mass scaling %g: expected a number above 0",
                        m->mass_scaling);
-    if (!(m->selective >= 1.0 && isfinite(m->selective)))
-        return wb_fail(WB_ERR_ARGUMENT, "selective mass scaling %g: expected 1 or more",
-                       m->selective);
-    for (int k = 0; k < m->layout.n_nodes; k++) {
-        if (!(m->node_mass[k] > 0.0 && isfinite(m->node_mass[k])))
-            return wb_fail(WB_ERR_ARGUMENT,
-                           "node %d has a mass of %g kg/m: expected a number above 0", k,
-                           m->node_mass[k]);
-    }
-    return WB_OK;
+    return wb_swept_step_check_masses(m->layout.n_nodes, m->node_mass, m->selective);
 }
 
 static void allocate(struct wb_swept_step *step)

@@ -52,6 +52,11 @@ WB_MUST_CHECK enum wb_status wb_swept_step_create(struct wb_swept_step **out,
                                                   const struct wb_swept_step_model *model);
 void wb_swept_step_destroy(struct wb_swept_step *step);
 
+/* WB_ERR_ARGUMENT unless the masses of n nodes are positive and selective mass scaling is 1 or
+ * more. */
+WB_MUST_CHECK enum wb_status wb_swept_step_check_masses(int n, const double *node_mass,
+                                                        double selective);
+
 /* Fixes or releases one component of a station. */
 void wb_swept_step_hold(struct wb_swept_step *step, int station, int component, bool held);
 

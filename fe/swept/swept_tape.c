@@ -1,6 +1,5 @@
 #include "fe/swept/swept_tape.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +7,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fe/material/hardening.h"
+#include "fe/swept/swept_frequency.h"
 #include "fe/swept/swept_private.h"
 #include "fe/swept/swept_tape_kernel.h"
 
@@ -157,7 +157,7 @@ static bool find_element(const struct wb_swept_tape *tape, int k, int j, struct 
     wb_vec3_cross(X1, X2, area);
     element->area = sqrt(wb_vec3_dot(area, area));
     const double length = sqrt(wb_vec3_dot(X1, X1));
-    if (!(element->area > 0.0 && isfinite(element->area) && length > 0.0))
+    if (!(wb_swept_is_positive(element->area) && length > 0.0))
         return false;
     for (int i = 0; i < 3; i++) {
         e1[i] = X1[i] / length;
@@ -283,7 +283,7 @@ static enum wb_status check_material(const struct wb_material *m)
         return wb_fail(
             WB_ERR_UNSUPPORTED,
             "kinematic hardening is not supported by the tape; expected isotropic hardening");
-    if (!(m->youngs_modulus > 0.0 && isfinite(m->youngs_modulus)) ||
+    if (!wb_swept_is_positive(m->youngs_modulus) ||
         !(m->poissons_ratio > -1.0 && m->poissons_ratio <= 0.5))
         return wb_fail(WB_ERR_ARGUMENT,
                        "tape: Young's modulus %g Pa, Poisson's ratio %g: expected "
@@ -307,9 +307,8 @@ static enum wb_status check(const struct wb_swept_tape_model *m)
                        "nodes, at least 2 stations and the stride of their layout",
                        layout->n_nodes, layout->n_stations, layout->stride, m->closed ? 3 : 2,
                        MAX_NODES);
-    if (!(m->density > 0.0 && isfinite(m->density)) ||
-        !(m->thickness > 0.0 && isfinite(m->thickness)) ||
-        !(m->spacing > 0.0 && isfinite(m->spacing)))
+    if (!wb_swept_is_positive(m->density) || !wb_swept_is_positive(m->thickness) ||
+        !wb_swept_is_positive(m->spacing))
         return wb_fail(
             WB_ERR_ARGUMENT,
             "tape: density %g kg/m3, thickness %g m, station spacing %g m: expected numbers "
@@ -621,9 +620,8 @@ static enum wb_status element_eigenvalue(const struct wb_swept_tape *tape,
                                          double *value)
 {
     double u[UNKNOWNS], row[ALL_MEASURES][UNKNOWNS], k[ALL_MEASURES];
-    double K[UNKNOWNS * UNKNOWNS] = {0.0}, values[UNKNOWNS], vector = 0.0;
+    double K[UNKNOWNS * UNKNOWNS] = {0.0};
     const double length = sqrt(element->area);
-    lapack_int found = 0, ignored = 0;
 
     for (int a = 0; a < 4; a++) {
         memcpy(u + 3 * a, element->node[a], sizeof element->node[a]);
@@ -648,13 +646,8 @@ static enum wb_status element_eigenvalue(const struct wb_swept_tape *tape,
                 K[a * UNKNOWNS + b] += k[i] * row[i][a] * row[i][b];
         }
     }
-    const lapack_int info =
-        LAPACKE_dsyevx(LAPACK_ROW_MAJOR, 'N', 'I', 'U', UNKNOWNS, K, UNKNOWNS, 0.0, 0.0, UNKNOWNS,
-                       UNKNOWNS, 0.0, &found, values, &vector, 1, &ignored);
-    if (info != 0 || found != 1 || !(values[0] > 0.0 && isfinite(values[0])))
-        return wb_fail(WB_ERR_CONVERGENCE,
-                       "the eigenvalue solver failed for an element of the tape");
-    *value = values[0] * (1.0 + 1e-9);
+    WB_TRY(wb_swept_frequency_largest(K, UNKNOWNS, "an element of the tape", value));
+    *value *= 1.0 + 1e-9;
     return WB_OK;
 }
 

@@ -462,8 +462,7 @@ static enum wb_status refresh(struct wb_swept_tape_contact *c,
 static enum wb_status check(const struct wb_swept_tape_contact_settings *s, int n_wires,
                             const struct wb_swept_wire *wires)
 {
-    if (!(s->normal_stiffness > 0.0 && isfinite(s->normal_stiffness)) ||
-        !(s->shear_stiffness > 0.0 && isfinite(s->shear_stiffness)))
+    if (!wb_swept_is_positive(s->normal_stiffness) || !wb_swept_is_positive(s->shear_stiffness))
         return wb_fail(WB_ERR_ARGUMENT,
                        "contact of the tape: the normal stiffness is %g Pa/m and the shear "
                        "stiffness %g Pa/m: expected numbers above 0",
@@ -482,7 +481,7 @@ static enum wb_status check(const struct wb_swept_tape_contact_settings *s, int 
                        "expected 0 or more",
                        s->margin, s->refresh_interval);
     for (int w = 0; w < n_wires; w++) {
-        if (!(wires[w].radius > 0.0 && isfinite(wires[w].radius)) || wires[w].n_surface < 3)
+        if (!wb_swept_is_positive(wires[w].radius) || wires[w].n_surface < 3)
             return wb_fail(WB_ERR_ARGUMENT,
                            "wire %d has a radius of %g m and %d surface nodes: expected a radius "
                            "above 0 and at least 3 nodes",
