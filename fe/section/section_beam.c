@@ -19,11 +19,27 @@ static void add(const struct wb_section_beam *beam, double *to, int station, int
         to[index] += amount;
 }
 
-static double bend(const struct wb_section_beam *beam, int element)
+/* Derivative of an unknown along an element. */
+static double slope_of(const struct wb_section_beam *beam, int element, int unknown)
 {
-    return (wb_section_beam_value(beam, beam->u, element + 1, 0) -
-            wb_section_beam_value(beam, beam->u, element, 0)) /
+    return (wb_section_beam_value(beam, beam->u, element + 1, unknown) -
+            wb_section_beam_value(beam, beam->u, element, unknown)) /
            beam->h;
+}
+
+/* Rotation at the middle of an element. */
+static double turned_at(const struct wb_section_beam *beam, int element)
+{
+    return 0.5 * (wb_section_beam_value(beam, beam->u, element, 0) +
+                  wb_section_beam_value(beam, beam->u, element + 1, 0));
+}
+
+/* Difference of two unknowns at a station. */
+static double slip_of(const struct wb_section_beam *beam, const double *u, int station,
+                      const int unknown[2])
+{
+    return wb_section_beam_value(beam, u, station, unknown[0]) -
+           wb_section_beam_value(beam, u, station, unknown[1]);
 }
 
 /* --- evaluation --- */
@@ -34,10 +50,8 @@ static void evaluate_wire(struct wb_section_beam *beam, int element, int w)
     const size_t at = (size_t)element * (size_t)beam->layout.n_wires + (size_t)w;
     const size_t history = at * (size_t)beam->history;
     struct wb_fibres_response *const r = &beam->response[at];
-    const double kappa = bend(beam, element);
-    const double strain = (wb_section_beam_value(beam, beam->u, element + 1, wire->unknown) -
-                           wb_section_beam_value(beam, beam->u, element, wire->unknown)) /
-                          beam->h;
+    const double kappa = slope_of(beam, element, 0);
+    const double strain = slope_of(beam, element, wire->unknown);
 
     wb_fibres_respond(beam->fibres[wire->type], strain - wire->y * kappa, kappa,
                       beam->wires_before + history, beam->wires_after + history, r);
@@ -61,7 +75,7 @@ static struct wb_section_beam_wall find_wall(const struct wb_section_beam *beam,
     const double a1 = wb_section_beam_value(beam, u, element + 1, segment->unknown[0]);
     const double b1 = wb_section_beam_value(beam, u, element + 1, segment->unknown[1]);
     struct wb_section_beam_wall w = {
-        .e = 0.5 * (a1 + b1 - a0 - b0) / beam->h - segment->y * bend(beam, element),
+        .e = 0.5 * (a1 + b1 - a0 - b0) / beam->h - segment->y * slope_of(beam, element, 0),
         .g = 0.5 * (b0 + b1 - a0 - a1) / segment->length,
     };
     const double e = w.e, g = w.g, g2 = g * g;
@@ -135,14 +149,10 @@ static double sticking_friction(const struct wb_section_beam *beam, int station,
 {
     const struct wb_section_contact *const c = &beam->layout.contacts[contact];
     const size_t at = (size_t)(station - 1) * (size_t)beam->layout.n_contacts + (size_t)contact;
-    const double slip = wb_section_beam_value(beam, beam->u, station, c->unknown[0]) -
-                        wb_section_beam_value(beam, beam->u, station, c->unknown[1]);
-    const double slip_before =
-        wb_section_beam_value(beam, beam->committed, station, c->unknown[0]) -
-        wb_section_beam_value(beam, beam->committed, station, c->unknown[1]);
-    return beam->friction_before[at] + beam->settings.slip_stiffness *
-                                           wb_section_beam_share(beam, station) *
-                                           (slip - slip_before);
+    const double slip = slip_of(beam, beam->u, station, c->unknown) -
+                        slip_of(beam, beam->committed, station, c->unknown);
+    return beam->friction_before[at] +
+           beam->settings.slip_stiffness * wb_section_beam_share(beam, station) * slip;
 }
 
 static double limit_of(const struct wb_section_beam *beam, size_t contact)
@@ -163,8 +173,7 @@ static void evaluate_station(struct wb_section_beam *beam, int station)
     for (int i = 0; i < layout->n_bonds; i++) {
         const struct wb_section_bond *const bond = &layout->bonds[i];
         const double force = bond->stiffness * wb_section_beam_share(beam, station) *
-                             (wb_section_beam_value(beam, beam->u, station, bond->unknown[0]) -
-                              wb_section_beam_value(beam, beam->u, station, bond->unknown[1]));
+                             slip_of(beam, beam->u, station, bond->unknown);
         add(beam, beam->residual, station, bond->unknown[0], force);
         add(beam, beam->residual, station, bond->unknown[1], -force);
     }
@@ -188,8 +197,7 @@ static void find_tip(struct wb_section_beam *beam, const struct wb_section_beam_
     struct wb_section_beam_tip tip = {.vertical = loads->vertical, .weight = loads->weight};
 
     for (int m = 0; m < beam->n_elements; m++) {
-        const double turned = 0.5 * (wb_section_beam_value(beam, beam->u, m, 0) +
-                                     wb_section_beam_value(beam, beam->u, m + 1, 0));
+        const double turned = turned_at(beam, m);
         const double rise = beam->h * sin(turned);
         tip.height += beam->h * (tip.y + 0.5 * rise);
         tip.x += beam->h * cos(turned);
@@ -210,8 +218,7 @@ static double vertical_through(const struct wb_section_beam *beam,
 static void evaluate_loads(struct wb_section_beam *beam, const struct wb_section_beam_loads *loads)
 {
     for (int m = 0; m < beam->n_elements; m++) {
-        const double turned = 0.5 * (wb_section_beam_value(beam, beam->u, m, 0) +
-                                     wb_section_beam_value(beam, beam->u, m + 1, 0));
+        const double turned = turned_at(beam, m);
         const double up = 0.5 * beam->h * cos(turned), in = -0.5 * beam->h * sin(turned);
         const double lever = up + beam->tip.slope * in;
         const double weight = vertical_through(beam, loads, m) - loads->vertical;
@@ -231,7 +238,7 @@ static void evaluate_loads(struct wb_section_beam *beam, const struct wb_section
 static double find_load(struct wb_section_beam *beam, int element)
 {
     const struct wb_section_layout *const layout = &beam->layout;
-    const double kappa = bend(beam, element);
+    const double kappa = slope_of(beam, element, 0);
     double mean[2] = {0.0, 0.0};
 
     memset(beam->load, 0, 2 * (size_t)layout->n_wires * sizeof *beam->load);
@@ -428,8 +435,7 @@ bool wb_section_beam_factor(struct wb_section_beam *beam, const struct wb_sectio
     wb_layered_clear(beam->matrix);
     for (int m = 0; m < beam->n_elements; m++) {
         const int station[] = {m, m + 1}, unknown[] = {0, 0};
-        const double turned = 0.5 * (wb_section_beam_value(beam, beam->u, m, 0) +
-                                     wb_section_beam_value(beam, beam->u, m + 1, 0));
+        const double turned = turned_at(beam, m);
         const double bent = 0.25 * beam->h *
                             (vertical_through(beam, loads, m) * sin(turned) +
                              loads->vertical * beam->tip.slope * cos(turned));
@@ -443,6 +449,85 @@ bool wb_section_beam_factor(struct wb_section_beam *beam, const struct wb_sectio
     }
     wb_layered_factor(beam->matrix, &pivots);
     return !pivots.singular;
+}
+
+/* --- energies --- */
+
+/* Change of the difference of an unknown between an element's stations in the increment. */
+static double change_along(const struct wb_section_beam *beam, int element, int unknown)
+{
+    const double *const u = beam->u, *const from = beam->committed;
+
+    return wb_section_beam_value(beam, u, element + 1, unknown) -
+           wb_section_beam_value(beam, u, element, unknown) -
+           wb_section_beam_value(beam, from, element + 1, unknown) +
+           wb_section_beam_value(beam, from, element, unknown);
+}
+
+/* Adds the energies that an element took up since the last commit. */
+static void add_element_energies(struct wb_section_beam *beam, int element)
+{
+    struct wb_section_beam_energies *const e = &beam->energies;
+    const struct wb_section_layout *const layout = &beam->layout;
+    const double bent = change_along(beam, element, 0);
+
+    for (int w = 0; w < layout->n_wires; w++) {
+        const struct wb_section_wire *const wire = &layout->wires[w];
+        const size_t at = (size_t)element * (size_t)layout->n_wires + (size_t)w;
+        const struct wb_fibres_response *const now = &beam->response[at],
+                                               *const before = &beam->response_before[at];
+        const double stretched = change_along(beam, element, wire->unknown);
+        e->wires +=
+            0.5 * wire->weight *
+            ((now->N + before->N) * (stretched - wire->y * bent) + (now->M + before->M) * bent);
+    }
+    for (int s = 0; s < layout->n_segments; s++) {
+        const size_t at = (size_t)element * (size_t)layout->n_segments + (size_t)s;
+        const double volume = wb_section_beam_volume(beam, &layout->segments[s]);
+        for (int i = 0; i < 3; i++)
+            e->tape += 0.5 * volume * (beam->wall[at].stress[i] + beam->stress_before[at][i]) *
+                       (beam->walls[at].strain[i] - beam->strain_before[at][i]);
+    }
+}
+
+static void add_station_energies(struct wb_section_beam *beam, int station)
+{
+    const struct wb_section_layout *const layout = &beam->layout;
+
+    for (int i = 0; i < layout->n_bonds; i++) {
+        const struct wb_section_bond *const bond = &layout->bonds[i];
+        const double slip = slip_of(beam, beam->u, station, bond->unknown);
+        beam->energies.bonds +=
+            0.5 * bond->stiffness * wb_section_beam_share(beam, station) * slip * slip;
+    }
+    for (int i = 0; i < layout->n_contacts; i++) {
+        const struct wb_section_contact *const c = &layout->contacts[i];
+        const size_t at = (size_t)(station - 1) * (size_t)layout->n_contacts + (size_t)i;
+        double slip = 0.0;
+        for (int end = 0; end < 2; end++)
+            slip += (end == 0 ? 1.0 : -1.0) *
+                    (wb_section_beam_value(beam, beam->u, station, c->unknown[end]) -
+                     wb_section_beam_value(beam, beam->committed, station, c->unknown[end]));
+        beam->energies.friction +=
+            0.5 * c->weight * (beam->friction_now[at] + beam->friction_before[at]) * slip;
+    }
+}
+
+/* Adds the increment from the committed to the trial state. */
+static void add_energies(struct wb_section_beam *beam)
+{
+    const struct wb_section_beam_tip *const now = &beam->tip, *const before = &beam->tip_before;
+
+    beam->energies.external +=
+        0.5 * (now->vertical + before->vertical) * (now->y - before->y) +
+        0.5 * (now->vertical * now->slope + before->vertical * before->slope) *
+            (now->x - before->x) -
+        0.5 * (now->weight + before->weight) * (now->height - before->height);
+    beam->energies.bonds = 0.0;
+    for (int m = 0; m < beam->n_elements; m++) {
+        add_element_energies(beam, m);
+        add_station_energies(beam, m + 1);
+    }
 }
 
 /* --- states --- */
@@ -459,6 +544,7 @@ void wb_section_beam_commit(struct wb_section_beam *beam)
     const size_t wires = m * (size_t)beam->layout.n_wires;
     const size_t segments = m * (size_t)beam->layout.n_segments;
 
+    add_energies(beam);
     memcpy(beam->before, beam->committed, size);
     memcpy(beam->committed, beam->u, size);
     memcpy(beam->wires_before, beam->wires_after, wires * (size_t)beam->history * sizeof(double));

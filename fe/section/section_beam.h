@@ -104,7 +104,7 @@ struct wb_section_beam {
     double fold;         /* 1: largest curvature times half the depth of the wires */
     int n_slipping;      /* number of slipping contacts, of all stations */
 
-    /* Private to fe/section/section_beam*.c and section_energy.c. */
+    /* Private to fe/section/section_beam*.c. */
     int history;                         /* doubles of a wire's history at an element */
     double *wires_before, *wires_after;  /* (n_elements x n_wires x history) */
     struct wb_fibres_response *response; /* (n_elements x n_wires) */
@@ -164,8 +164,8 @@ void wb_section_beam_evaluate(struct wb_section_beam *beam,
 bool wb_section_beam_factor(struct wb_section_beam *beam,
                             const struct wb_section_beam_loads *loads);
 
-/* Commits the trial state, which must be the state last evaluated; or sets the trial state to the
- * committed one. */
+/* Commits the trial state, which must be the state last evaluated, and adds its increment to the
+ * energies; or sets the trial state to the committed one. */
 void wb_section_beam_commit(struct wb_section_beam *beam);
 void wb_section_beam_revert(struct wb_section_beam *beam);
 

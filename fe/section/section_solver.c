@@ -6,7 +6,6 @@
 
 #include "base/memory.h"
 #include "base/units.h"
-#include "fe/section/section_energy.h"
 
 enum {
     DEFAULT_ITERATIONS = 40,
@@ -199,7 +198,6 @@ static void extrapolate(struct wb_section_solver *s, double target)
 
 static void commit(struct wb_section_solver *s, double target)
 {
-    wb_section_energy_take(s->beam);
     wb_section_beam_commit(s->beam);
     s->before = s->now;
     s->now = (struct equilibrium){target, s->loads.vertical, s->loads.weight};
