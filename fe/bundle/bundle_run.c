@@ -14,8 +14,8 @@
 #include "base/memory.h"
 #include "base/units.h"
 #include "base/version.h"
-#include "fe/bundle/bundle_parts.h"
 #include "fe/model/model_inputs.h"
+#include "fe/swept/swept.h"
 #include "fe/team/team.h"
 
 #define WB_LOG_DOMAIN "bundle"
