@@ -805,6 +805,8 @@ void wb_swept_contact_get_point(const struct wb_swept_contact *contact, int pair
     }
     const double distance = sqrt(square);
     *out = (struct wb_swept_contact_point){
+        .wire = {of->wire[0], of->wire[1]},
+        .stiffness = of->normal,
         .gap = distance - of->reach,
         .length = get(contact, of->load, WB_SWEPT_CONTACT_LENGTH * row + station),
         .shift = place[1] - place[0],
@@ -813,25 +815,6 @@ void wb_swept_contact_get_point(const struct wb_swept_contact *contact, int pair
     for (int i = 0; i < 3; i++) {
         out->normal_direction[i] = distance > 0.0 ? between[i] / distance : 0.0;
         out->friction[i] = get(contact, of->load, (WB_SWEPT_CONTACT_DRAG + i) * row + station);
-    }
-}
-
-void wb_swept_contact_get_pair(const struct wb_swept_contact *contact, int pair,
-                               struct wb_swept_contact_pair *out)
-{
-    const struct wb_swept_contact_pair_rows *of = &contact->model.pair[pair];
-
-    *out = (struct wb_swept_contact_pair){
-        .wire = {of->wire[0], of->wire[1]},
-        .stiffness = of->normal,
-        .smallest = (double)INFINITY,
-    };
-    for (int j = 0; j < contact->model.n_stations; j++) {
-        struct wb_swept_contact_point point;
-        wb_swept_contact_get_point(contact, pair, j, &point);
-        out->normal += point.length * point.normal;
-        if (point.length > 0.0)
-            out->smallest = fmin(out->smallest, point.gap);
     }
 }
 

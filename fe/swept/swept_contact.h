@@ -100,7 +100,9 @@ double wb_swept_contact_stiffness_per_mass(const struct wb_swept_contact *contac
 
 /* Contact between neighbours at the last step's positions. */
 struct wb_swept_contact_point {
-    double gap;    /* m */
+    int wire[2];
+    double stiffness; /* k, N/m2 */
+    double gap;       /* m */
     double length; /* length represented by the point, m; 0 if one wire has no position opposite */
     double shift;  /* s, in stations */
     double normal; /* N/m, without damping */

@@ -32,7 +32,6 @@ struct wb_swept_hex {
     void *constants; /* the same in the kernel's type */
     void *table;
     int n_points;
-    int first_added;         /* node */
     struct wb_memory memory; /* of all arrays */
 };
 
@@ -155,6 +154,14 @@ static int farthest_node(const struct wb_swept_section *section)
     return farthest;
 }
 
+static int find_first_added(const struct wb_swept_section *section)
+{
+    int first = section->n_outline > 0 ? section->n_nodes : 0;
+    for (int i = 0; i < section->n_outline; i++)
+        first = section->outline[i] < first ? section->outline[i] : first;
+    return first;
+}
+
 static enum wb_status fill(struct wb_swept_hex *hex)
 {
     const struct wb_swept_hex_model *m = &hex->model;
@@ -173,6 +180,7 @@ static enum wb_status fill(struct wb_swept_hex *hex)
         .counted = wb_swept_range_within(m->counted, m->n_elements),
         .centre = m->section->centre,
         .beside = farthest_node(m->section),
+        .first_added = find_first_added(m->section),
         .quad = (const int(*)[4])m->section->quad,
         .node = (const double(*)[2])m->section->node,
         .length = m->element_length,
@@ -185,17 +193,9 @@ static enum wb_status fill(struct wb_swept_hex *hex)
     return WB_OK;
 }
 
-static int find_first_added(const struct wb_swept_section *section)
-{
-    int first = section->n_outline > 0 ? section->n_nodes : 0;
-    for (int i = 0; i < section->n_outline; i++)
-        first = section->outline[i] < first ? section->outline[i] : first;
-    return first;
-}
-
 int wb_swept_hex_first_added(const struct wb_swept_hex *hex)
 {
-    return hex->first_added;
+    return hex->numbers.first_added;
 }
 
 enum wb_status wb_swept_hex_create(struct wb_swept_hex **out,
@@ -206,7 +206,6 @@ enum wb_status wb_swept_hex_create(struct wb_swept_hex **out,
     hex->model = *model;
     if (hex->model.hourglass == 0.0)
         hex->model.hourglass = default_hourglass;
-    hex->first_added = find_first_added(model->section);
     const enum wb_status status = fill(hex);
     if (status != WB_OK) {
         wb_swept_hex_destroy(hex);
@@ -278,19 +277,18 @@ void *wb_swept_hex_state_data(struct wb_swept_hex_state *state, size_t *bytes)
     return state->history;
 }
 
-static void find_forces(struct wb_swept_hex_state *state, const struct wb_swept_hex_fields *fields,
-                        int first_added, const struct wb_swept_range *blocks,
-                        struct wb_swept_hex_sums *sums)
+void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
+                             const struct wb_swept_hex_fields *fields, int first, int end,
+                             struct wb_swept_hex_sums *sums)
 {
     const struct wb_swept_hex *hex = state->hex;
     const struct wb_swept_hex_kernel_call call = {
         .model = &hex->numbers,
         .fields = *fields,
-        .first_added = first_added,
         .history = state->history,
         .workspace = state->workspace,
-        .first_block = blocks->first,
-        .end_block = blocks->end,
+        .first_block = first,
+        .end_block = end,
         .sums = sums,
     };
 
@@ -298,22 +296,6 @@ static void find_forces(struct wb_swept_hex_state *state, const struct wb_swept_
         hex->kernel->one_point(&call);
     else
         hex->kernel->four_points(&call);
-}
-
-void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
-                         int first, int end, struct wb_swept_hex_sums *sums)
-{
-    const struct wb_swept_hex_fields fields = {.position = position, .force = force};
-
-    find_forces(state, &fields, state->hex->numbers.layout.n_nodes,
-                &(struct wb_swept_range){first, end}, sums);
-}
-
-void wb_swept_hex_add_forces(struct wb_swept_hex_state *state,
-                             const struct wb_swept_hex_fields *fields, int first, int end,
-                             struct wb_swept_hex_sums *sums)
-{
-    find_forces(state, fields, state->hex->first_added, &(struct wb_swept_range){first, end}, sums);
 }
 
 double wb_swept_hex_history(const struct wb_swept_hex_state *state, int quad, int element,

@@ -181,11 +181,10 @@ INLINE void put(real *at, vec value, bool adds)
     store(at, value);
 }
 
-INLINE void write_forces(const struct wb_swept_hex_kernel_model *m, real *force, int first_added,
-                         int j, const struct node *nodes, const struct frame *frame,
-                         vec (*carry)[3])
+INLINE void write_forces(const struct wb_swept_hex_kernel_model *m, real *force, int j,
+                         const struct node *nodes, const struct frame *frame, vec (*carry)[3])
 {
-    const int left = m->n_elements - j;
+    const int left = m->n_elements - j, first_added = m->first_added;
     const mask active = first_lanes(left);
 
     for (int k = 0; k < m->layout.n_nodes; k++) {
@@ -210,13 +209,13 @@ INLINE void write_forces(const struct wb_swept_hex_kernel_model *m, real *force,
 }
 
 /* Forces after the last element. */
-INLINE void write_last_force(const struct wb_swept_hex_kernel_model *m, real *force,
-                             int first_added, int j, vec (*carry)[3])
+INLINE void write_last_force(const struct wb_swept_hex_kernel_model *m, real *force, int j,
+                             vec (*carry)[3])
 {
     for (int k = 0; k < m->layout.n_nodes; k++) {
         for (int i = 0; i < 3; i++) {
             put(force + (size_t)(3 * k + i) * (size_t)m->layout.stride + j,
-                shift_in(carry[k][i], (vec){0}), k >= first_added);
+                shift_in(carry[k][i], (vec){0}), k >= m->first_added);
             carry[k][i] = (vec){0};
         }
     }
@@ -647,7 +646,7 @@ INLINE void run(const struct wb_swept_hex_kernel_call *call, int points, bool wa
         const int left = m->n_elements - j;
         struct frame frame;
         if (left <= 0) {
-            write_last_force(m, call->fields.force, call->first_added, j, carry);
+            write_last_force(m, call->fields.force, j, carry);
             continue;
         }
         read_nodes(m, call->fields.position, j, nodes, &frame);
@@ -659,7 +658,7 @@ INLINE void run(const struct wb_swept_hex_kernel_call *call, int points, bool wa
                 fetch(call, e * rows / m->n_quads, end * rows / m->n_quads, j);
             add_group(&slab, e, end - e, points);
         }
-        write_forces(m, call->fields.force, call->first_added, j, nodes, &frame, carry);
+        write_forces(m, call->fields.force, j, nodes, &frame, carry);
     }
 }
 

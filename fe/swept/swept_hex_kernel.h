@@ -43,6 +43,7 @@ struct wb_swept_hex_kernel_model {
     int n_quads;
     int n_elements;                /* along */
     int centre, beside;            /* two nodes whose line rotates with the section */
+    int first_added;               /* first node whose forces are added to existing ones */
     const int (*quad)[4];          /* (n_quads) */
     const double (*node)[2];       /* (layout.n_nodes) */
     double length;                 /* h, m */
@@ -56,7 +57,6 @@ struct wb_swept_hex_kernel_model {
 struct wb_swept_hex_kernel_call {
     const struct wb_swept_hex_kernel_model *model;
     struct wb_swept_hex_fields fields;
-    int first_added; /* first node whose forces are added to existing ones */
     void *history;
     void *workspace; /* ((NODE + CARRY) x n_nodes x WB_SWEPT_LANES), kept between calls */
     int first_block, end_block;

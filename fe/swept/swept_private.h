@@ -19,10 +19,6 @@ WB_MUST_CHECK enum wb_status wb_swept_section_init(struct wb_swept_section *sect
 
 /* --- hexahedra --- */
 
-/* As wb_swept_hex_add_forces(), but overwrites the forces of all nodes. */
-void wb_swept_hex_forces(struct wb_swept_hex_state *state, const double *position, void *force,
-                         int first, int end, struct wb_swept_hex_sums *sums);
-
 /* Number of points of an element with stresses: 4 Gauss points in the section, or 1. */
 int wb_swept_hex_stress_points(const struct wb_swept_hex *hex);
 
@@ -56,15 +52,6 @@ void wb_swept_contact_scatter(const struct wb_swept_contact *contact, void *cons
                               int end);
 WB_MUST_CHECK enum wb_status wb_swept_contact_finish(struct wb_swept_contact *contact,
                                                      struct wb_swept_contact_energies *energies);
-
-struct wb_swept_contact_pair {
-    int wire[2];
-    double stiffness; /* k, N/m2 */
-    double normal;    /* sum over the stations, N */
-    double smallest;  /* gap, m; negative: penetration */
-};
-void wb_swept_contact_get_pair(const struct wb_swept_contact *contact, int pair,
-                               struct wb_swept_contact_pair *out);
 
 /* --- tapes --- */
 

@@ -125,7 +125,8 @@ static double time_kernel(struct bench *b, bool move)
                 struct wire *wire = &b->wire[w];
                 double *position = wire->bent[turn % 2];
                 const struct wb_swept_step_fields fields = {position, wire->velocity, wire->force};
-                wb_swept_hex_forces(wire->state, position, wire->force, 0, blocks, NULL);
+                const struct wb_swept_hex_fields forces = {position, wire->force, NULL};
+                wb_swept_hex_add_forces(wire->state, &forces, 0, blocks, NULL);
                 if (move)
                     wb_swept_step_update(b->step, &fields, still, 0, blocks, NULL);
             }

@@ -63,6 +63,28 @@ static inline void contacts_init(struct contacts *c,
         wb_swept_contact_create(&c->contact, settings, n_wires, wires, n_stations, spacing), WB_OK);
 }
 
+struct contacts_pair {
+    int wire[2];
+    double stiffness; /* k, N/m2 */
+    double normal;    /* sum over the stations, N */
+    double smallest;  /* gap, m; negative: penetration */
+};
+
+static inline struct contacts_pair contacts_pair(const struct contacts *c, int pair)
+{
+    struct contacts_pair out = {.smallest = (double)INFINITY};
+    for (int j = 0; j < c->n_stations; j++) {
+        struct wb_swept_contact_point point;
+        wb_swept_contact_get_point(c->contact, pair, j, &point);
+        memcpy(out.wire, point.wire, sizeof out.wire);
+        out.stiffness = point.stiffness;
+        out.normal += point.length * point.normal;
+        if (point.length > 0.0)
+            out.smallest = fmin(out.smallest, point.gap);
+    }
+    return out;
+}
+
 static inline void contacts_release(struct contacts *c)
 {
     wb_swept_contact_destroy(c->contact);

@@ -3,6 +3,7 @@
 #define WB_TESTS_FE_SWEPT_SWEPT_BODIES_H
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "fe/swept/swept_hex.h"
 #include "fe/swept/swept_private.h"
@@ -60,11 +61,20 @@ static inline void swept_body_destroy(struct swept_body *body)
     free(body->force);
 }
 
+/* Computes the forces of blocks `first` to `end` - 1, without other forces. */
+static inline void swept_find_forces(struct swept_body *body, int first, int end,
+                                     struct wb_swept_hex_sums *sums)
+{
+    const struct wb_swept_hex_fields fields = {.position = body->position, .force = body->force};
+    if (first == 0)
+        memset(body->force, 0, wb_swept_size(&body->layout) * sizeof(double));
+    wb_swept_hex_add_forces(body->state, &fields, first, end, sums);
+}
+
 static inline struct wb_swept_hex_sums swept_forces(struct swept_body *body)
 {
     struct wb_swept_hex_sums sums = {0};
-    wb_swept_hex_forces(body->state, body->position, body->force, 0, wb_swept_hex_blocks(body->hex),
-                        &sums);
+    swept_find_forces(body, 0, wb_swept_hex_blocks(body->hex), &sums);
     return sums;
 }
 

@@ -94,7 +94,7 @@ static inline void swept_advance(struct swept_run *run, double first, double dt,
                                  struct wb_swept_step_sums *sums)
 {
     const double times[2] = {first, dt};
-    wb_swept_hex_forces(run->body.state, run->body.position, run->body.force, 0, run->blocks, NULL);
+    swept_find_forces(&run->body, 0, run->blocks, NULL);
     wb_swept_step_update(run->step, &run->fields, times, 0, run->blocks, sums);
 }
 

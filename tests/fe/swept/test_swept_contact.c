@@ -48,9 +48,9 @@ static void parallel_wires_press_with_stiffness_times_depth(void **state)
     assert_close_relative(c.energies.normal, 0.5 * k * depth * depth * length, 1e-9);
     assert_close_relative(c.energies.deepest, depth, 1e-9);
     assert_close(c.energies.tangential, 0.0, 1e-20);
-    struct wb_swept_contact_pair pair;
+    struct contacts_pair pair;
     assert_int_equal(wb_swept_contact_pairs(c.contact), 1);
-    wb_swept_contact_get_pair(c.contact, 0, &pair);
+    pair = contacts_pair(&c, 0);
     assert_close_relative(pair.stiffness, k, 1e-14);
     assert_close_relative(pair.normal, k * depth * length, 1e-9);
     assert_close_relative(pair.smallest, -depth, 1e-9);
@@ -389,7 +389,7 @@ static void wires_separate_and_touch_again_elsewhere(void **state)
 {
     const double radius[3] = {0.7e-3, 0.7e-3, 0.7e-3}, depth = 1e-6, near = 1.4e-3 - depth;
     struct wb_swept_contact_settings settings = contacts_settings();
-    struct wb_swept_contact_pair pair;
+    struct contacts_pair pair;
     struct wb_swept_contact_point point;
     struct contacts c;
     double f[3][3], m[3];
@@ -416,7 +416,7 @@ static void wires_separate_and_touch_again_elsewhere(void **state)
         const double length = 20e-3 - fabs(to[0]), N = 0.25e9 * depth * length;
         const int other = stage == 2 ? 2 : 0;
         assert_int_equal(wb_swept_contact_pairs(c.contact), 1);
-        wb_swept_contact_get_pair(c.contact, 0, &pair);
+        pair = contacts_pair(&c, 0);
         assert_int_equal(pair.wire[0] + pair.wire[1], 1 + other);
         assert_close_relative(pair.normal, N, 1e-5);
         assert_close_relative(f[1][1], other == 0 ? N : -N, 1e-5);

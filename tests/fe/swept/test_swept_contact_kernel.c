@@ -232,7 +232,7 @@ static void rub(struct twin *twin, double k_t, double length, double N, const do
     twin->tangential += length * 0.5 * wb_vec3_dot(drag, drag) / k_t;
 }
 
-static void press_point(struct twin *twin, const struct wb_swept_contact_pair *pair,
+static void press_point(struct twin *twin, const struct contacts_pair *pair,
                         const struct wb_swept_contact_point *point, int j)
 {
     const double end = twin->c->n_stations - 1, half = 0.5 * fabs(point->shift);
@@ -307,8 +307,8 @@ static void twin_step(struct twin *twin)
     for (int w = 0; w < c->n_wires; w++)
         memset(twin->force[w], 0, wb_swept_size(&c->layout) * sizeof(double));
     for (int p = 0; p < wb_swept_contact_pairs(c->contact); p++) {
-        struct wb_swept_contact_pair pair;
-        wb_swept_contact_get_pair(c->contact, p, &pair);
+        struct contacts_pair pair;
+        pair = contacts_pair(c, p);
         for (int j = 0; j < c->n_stations; j++) {
             struct wb_swept_contact_point point;
             wb_swept_contact_get_point(c->contact, p, j, &point);

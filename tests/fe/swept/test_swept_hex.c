@@ -354,9 +354,8 @@ static void all_instructions_agree(void **unused)
                     for (int j = l->n_stations; j < l->stride; j++)
                         body.position[row * l->stride + j] = 1e3 * test_random(&seed);
                 }
-                wb_swept_hex_forces(body.state, body.position, body.force, 0, 1, NULL);
-                wb_swept_hex_forces(body.state, body.position, body.force, 1,
-                                    wb_swept_hex_blocks(body.hex), NULL);
+                swept_find_forces(&body, 0, 1, NULL);
+                swept_find_forces(&body, 1, wb_swept_hex_blocks(body.hex), NULL);
                 assert_true(difference(&body, force) < 1e-5);
                 for (int row = 0; row < 3 * l->n_nodes; row++) {
                     for (int j = l->n_stations; j < l->stride; j++)
@@ -388,7 +387,7 @@ static void forces_are_added_to_existing_ones(void **unused)
         uint64_t seed = 3, same = 3;
         shake(&once, 5e-4, 1.0, &seed);
         shake(&twice, 5e-4, 1.0, &same);
-        wb_swept_hex_forces(once.state, once.position, once.force, 0, n, NULL);
+        swept_find_forces(&once, 0, n, NULL);
         memcpy(twice.force, once.force, wb_swept_size(&once.layout) * sizeof(double));
         const struct wb_swept_hex_fields fields = {twice.position, twice.force, twice.position};
         for (int b = 0; b < n; b++)
@@ -422,7 +421,7 @@ static void forces_inside_a_circle_are_overwritten(void **unused)
     assert_int_equal(first, section.n_nodes - section.n_outline);
     shake(&once, 5e-4, 1.0, &seed);
     shake(&again, 5e-4, 1.0, &same);
-    wb_swept_hex_forces(once.state, once.position, once.force, 0, n, NULL);
+    swept_find_forces(&once, 0, n, NULL);
     memcpy(again.force, once.force, wb_swept_size(&once.layout) * sizeof(double));
     const struct wb_swept_hex_fields fields = {.position = again.position, .force = again.force};
     wb_swept_hex_add_forces(again.state, &fields, 0, n, NULL);

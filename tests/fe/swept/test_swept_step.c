@@ -248,8 +248,7 @@ static void free_body_conserves_momentum_and_energy(void **unused)
             struct wb_swept_step_sums sums = {0};
             struct wb_swept_hex_sums strain = {0};
             const double times[2] = {step == 0 ? 0.5 * dt : dt, dt};
-            wb_swept_hex_forces(run.body.state, run.body.position, run.body.force, 0, run.blocks,
-                                look ? &strain : NULL);
+            swept_find_forces(&run.body, 0, run.blocks, look ? &strain : NULL);
             wb_swept_step_update(run.step, &run.fields, times, 0, run.blocks, look ? &sums : NULL);
             const double all = sums.kinetic + strain.stored + strain.artificial +
                                (look ? wb_swept_hex_plastic_work(run.body.state) : 0.0);
@@ -383,7 +382,7 @@ static void bar_impact_has_its_stress_and_contact_time(void **unused)
     double time = 0.0, pushed = 0.0, sum = 0.0, parted = 0.0;
     int n = 0;
     for (int step = 0; parted == 0.0 && time < 0.2 / c; step++) {
-        wb_swept_hex_forces(run.body.state, run.body.position, run.body.force, 0, run.blocks, NULL);
+        swept_find_forces(&run.body, 0, run.blocks, NULL);
         pushed = 0.0;
         for (int k = 0; k < run.section.n_nodes; k++)
             pushed -= swept_force(&run.body, k, 0, 0);
