@@ -12,7 +12,6 @@
 #include "fe/model/model_file.h"
 #include "fe/model/packing_touch.h"
 
-static const double pi = 3.14159265358979323846;
 static const double touching = 1e-9; /* m: wires within this distance touch the tape */
 static const double largest_poisson = 0.499;
 
@@ -182,7 +181,7 @@ int wb_bundle_model_tape_quads(const struct wb_bundle_model *model,
     double thinnest = (double)INFINITY;
     for (int i = 0; i < model->n_types; i++)
         thinnest = fmin(thinnest, model->type[i].outer_diameter);
-    const double width = pi * thinnest / (4 * mesh->core_quads);
+    const double width = M_PI * thinnest / (4 * mesh->core_quads);
     return 6 * (int)ceil(model->tape.taping.circumference / (6.0 * width) - 1e-9);
 }
 

@@ -182,6 +182,11 @@ struct standing {
     double deflection; /* m, when held */
 };
 
+static bool is_zero(const double vector[3])
+{
+    return vector[0] == 0.0 && vector[1] == 0.0 && vector[2] == 0.0;
+}
+
 /* +1: the load grows; -1: it decreases or is reversed; 0: it is constant. */
 static int growth(const double from[3], const double to[3])
 {
@@ -234,7 +239,7 @@ static enum wb_status check_action(const struct wb_config_node *map, const struc
 static enum wb_status take_loads(const struct wb_config_node *map, const struct action *action,
                                  const struct standing *standing, struct wb_wire_step *step)
 {
-    const struct wb_tip_loads none = {0}, *const before = &standing->loads;
+    const struct wb_tip_loads *const before = &standing->loads;
     if (standing->held)
         return wb_config_refuse(
             map, NULL, "a deflection is held; only another deflection or release can follow");
@@ -246,11 +251,9 @@ static enum wb_status take_loads(const struct wb_config_node *map, const struct 
     if (action->follower)
         WB_TRY(read_triple(action->follower, "follower_N", 1e6, step->loads.follower));
     if (action->unload) {
-        if (wb_vec3_dot(before->force, before->force) == 0.0 &&
-            wb_vec3_dot(before->moment, before->moment) == 0.0 &&
-            wb_vec3_dot(before->follower, before->follower) == 0.0)
+        if (is_zero(before->force) && is_zero(before->moment) && is_zero(before->follower))
             return wb_config_refuse(map, "unload", "nothing acts at the tip before this step");
-        step->loads = none;
+        step->loads = (struct wb_tip_loads){0};
     }
     step->unloads = loads_unload(before, &step->loads);
     return WB_OK;
@@ -408,11 +411,6 @@ enum wb_status wb_wire_model_read(struct wb_wire_model *model, const char *path)
 }
 
 /* --- derived properties --- */
-
-static bool is_zero(const double vector[3])
-{
-    return vector[0] == 0.0 && vector[1] == 0.0 && vector[2] == 0.0;
-}
 
 bool wb_wire_model_is_follower(const struct wb_wire_model *model)
 {

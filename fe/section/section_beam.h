@@ -94,10 +94,10 @@ struct wb_section_beam {
     /* Trial state, and the last two committed states: (n_unknowns). */
     double *u, *committed, *before;
     /* Results of wb_section_beam_evaluate() for the trial state. */
-    double *residual;     /* (n_unknowns): internal forces minus loads */
-    double *lever;        /* (n_unknowns): generalised force per newton of V */
-    double *draw;         /* (n_unknowns): derivative of the tip's x */
-    double axial, moment; /* N, N m: largest of any wire, of any section: the scale of forces */
+    double *residual; /* (n_unknowns): internal forces minus loads */
+    double *lever;    /* (n_unknowns): generalised force per newton of V */
+    double *draw;     /* (n_unknowns): derivative of the tip's x */
+    double axial;     /* N: largest of any wire: the scale of forces */
     struct wb_section_beam_tip tip;
     double missing;      /* largest imbalance of transverse loads, over the loads */
     double tape_plastic; /* 1: largest accumulated plastic strain of the tape */

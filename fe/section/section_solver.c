@@ -263,13 +263,11 @@ static bool advance(struct wb_section_solver *s, double target)
 /* Returns to the last equilibrium. */
 static void return_to_last(struct wb_section_solver *s)
 {
-    const double residual = s->point.residual;
     s->point.end = WB_SECTION_SOLVER_NOT_CONVERGED;
     wb_section_beam_revert(s->beam);
     s->loads.vertical = s->now.vertical;
     s->loads.weight = s->now.weight;
     wb_section_beam_evaluate(s->beam, &s->loads, true);
-    s->point.residual = residual;
 }
 
 void wb_section_solver_move(struct wb_section_solver *s, double deflection,

@@ -300,10 +300,7 @@ void wb_swept_cohesion_add_forces(struct wb_swept_cohesion *cohesion,
                                   const struct wb_swept_cohesion_fields *fields, int first, int end,
                                   struct wb_swept_cohesion_sums *sums)
 {
-    const struct wb_swept_cohesion_kernel_call call = {
-        &cohesion->model, fields, cohesion->damage, first, end, sums};
-
-    cohesion->kernel->add_forces(&call);
+    cohesion->kernel->add_forces(&cohesion->model, fields, cohesion->damage, first, end, sums);
 }
 
 /* --- queries --- */

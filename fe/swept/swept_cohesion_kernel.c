@@ -121,22 +121,22 @@ INLINE void run_strip(const struct wb_swept_cohesion_kernel_model *m,
     }
 }
 
-static void add_forces(const struct wb_swept_cohesion_kernel_call *call)
+static void add_forces(const struct wb_swept_cohesion_kernel_model *m,
+                       const struct wb_swept_cohesion_fields *fields, void *damage, int first,
+                       int end, struct wb_swept_cohesion_sums *sums)
 {
-    const struct wb_swept_cohesion_kernel_model *m = call->model;
-
-    for (int b = call->first_block; b < call->end_block; b++) {
+    for (int b = first; b < end; b++) {
         struct totals totals = {{0}, {0}};
         for (int s = m->first[b]; s < m->first[b + 1]; s++) {
             const real *rows = (const real *)m->rows + (size_t)s * WB_SWEPT_COHESION_ROWS * BLOCK;
-            real *damage = (real *)call->damage + (size_t)s * BLOCK;
+            real *own = (real *)damage + (size_t)s * BLOCK;
             for (int lane = 0; lane < BLOCK; lane += LANES)
-                run_strip(m, call->fields, &m->strip[s], rows + lane, damage + lane,
-                          b * BLOCK + lane, &totals);
+                run_strip(m, fields, &m->strip[s], rows + lane, own + lane, b * BLOCK + lane,
+                          &totals);
         }
-        for (int i = 0; i < LANES && call->sums; i++) {
-            call->sums->stored += (double)totals.stored[i];
-            call->sums->dissipated += (double)totals.dissipated[i];
+        for (int i = 0; i < LANES && sums; i++) {
+            sums->stored += (double)totals.stored[i];
+            sums->dissipated += (double)totals.dissipated[i];
         }
     }
 }

@@ -38,16 +38,12 @@ struct wb_swept_cohesion_kernel_model {
     struct wb_swept_range counted; /* stations, in sums */
 };
 
-struct wb_swept_cohesion_kernel_call {
-    const struct wb_swept_cohesion_kernel_model *model;
-    const struct wb_swept_cohesion_fields *fields;
-    void *damage; /* of each strip (LANES) */
-    int first_block, end_block;
-    struct wb_swept_cohesion_sums *sums; /* added to; may be NULL */
-};
-
 struct wb_swept_cohesion_kernel {
-    void (*add_forces)(const struct wb_swept_cohesion_kernel_call *call);
+    /* Adds the forces of blocks `first` to `end` - 1; `damage` is that of each strip (LANES),
+     * `sums` may be NULL. */
+    void (*add_forces)(const struct wb_swept_cohesion_kernel_model *model,
+                       const struct wb_swept_cohesion_fields *fields, void *damage, int first,
+                       int end, struct wb_swept_cohesion_sums *sums);
 };
 
 WB_SWEPT_KERNEL_DECLARE(wb_swept_cohesion_kernel);

@@ -268,7 +268,8 @@ static enum wb_status make_reference(struct wb_swept_tape *tape)
     WB_TRY(normalise_directors(tape));
     WB_TRY(for_elements(tape, fill_reference));
     const struct wb_swept_tape_kernel_call call = {
-        .model = &tape->numbers, .position = tape->position, .director = tape->director};
+        .model = &tape->numbers,
+        .fields = {.position = tape->position, .director = tape->director}};
     tape->kernel->measure(&call);
     return WB_OK;
 }
@@ -500,10 +501,7 @@ void wb_swept_tape_forces(struct wb_swept_tape_state *state,
     const struct wb_swept_tape *tape = state->tape;
     const struct wb_swept_tape_kernel_call call = {
         .model = &tape->numbers,
-        .position = fields->position,
-        .director = fields->director,
-        .force = fields->force,
-        .moment = fields->moment,
+        .fields = *fields,
         .history = state->history,
         .carry = state->carry,
         .first_block = first,

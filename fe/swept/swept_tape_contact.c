@@ -597,12 +597,9 @@ enum wb_status wb_swept_tape_contact_add_forces(struct wb_swept_tape_contact *co
                                                 double time_step,
                                                 struct wb_swept_tape_contact_sums *sums)
 {
-    const struct wb_swept_tape_contact_kernel_call call = {&contact->model, fields,
-                                                           contact->history, time_step, sums};
-
     if (contact->steps == 0)
         WB_TRY(refresh(contact, fields));
-    contact->kernel->add_forces(&call);
+    contact->kernel->add_forces(&contact->model, fields, contact->history, time_step, sums);
     /* Refresh after the forces: the slip of each step then refers to one contact point. */
     if (++contact->steps % contact->settings.refresh_interval == 0)
         WB_TRY(refresh(contact, fields));

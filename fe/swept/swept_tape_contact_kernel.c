@@ -219,9 +219,10 @@ INLINE void run_strip(const struct wb_swept_tape_contact_kernel_model *m,
     add_forces_at(m, fields, strip, &place, j, f.drag, law->normal * depth);
 }
 
-static void add_forces(const struct wb_swept_tape_contact_kernel_call *call)
+static void add_forces(const struct wb_swept_tape_contact_kernel_model *m,
+                       const struct wb_swept_cohesion_fields *fields, void *history,
+                       double time_step, struct wb_swept_tape_contact_sums *sums)
 {
-    const struct wb_swept_tape_contact_kernel_model *m = call->model;
     struct contact_law law = {
         .normal = splat((real)m->normal),
         .tangential = splat((real)m->shear),
@@ -229,24 +230,24 @@ static void add_forces(const struct wb_swept_tape_contact_kernel_call *call)
     };
     struct totals totals = {{0}, {0}, {0}, {0}};
 
-    set_friction(&law, &m->friction, call->time_step);
+    set_friction(&law, &m->friction, time_step);
     for (int b = 0; b < m->n_blocks; b++) {
         for (int s = m->first[b]; s < m->first[b + 1]; s++) {
             const struct wb_swept_tape_contact_strip *strip = &m->strip[s];
             const real *rows =
                 (const real *)m->rows + (size_t)s * WB_SWEPT_TAPE_CONTACT_ROWS * BLOCK;
-            real *history = (real *)call->history +
-                            (size_t)strip->node * WB_SWEPT_TAPE_CONTACT_HISTORY * (size_t)m->stride;
+            real *own = (real *)history +
+                        (size_t)strip->node * WB_SWEPT_TAPE_CONTACT_HISTORY * (size_t)m->stride;
             for (int lane = 0; lane < BLOCK; lane += LANES)
-                run_strip(m, &law, call->fields, strip, rows + lane, b * BLOCK + lane,
-                          history + b * BLOCK + lane, &totals);
+                run_strip(m, &law, fields, strip, rows + lane, b * BLOCK + lane,
+                          own + b * BLOCK + lane, &totals);
         }
     }
     for (int i = 0; i < LANES; i++) {
-        call->sums->normal += (double)totals.normal[i];
-        call->sums->tangential += (double)totals.tangential[i];
-        call->sums->friction += (double)totals.friction[i];
-        call->sums->deepest = fmax(call->sums->deepest, (double)totals.deepest[i]);
+        sums->normal += (double)totals.normal[i];
+        sums->tangential += (double)totals.tangential[i];
+        sums->friction += (double)totals.friction[i];
+        sums->deepest = fmax(sums->deepest, (double)totals.deepest[i]);
     }
 }
 

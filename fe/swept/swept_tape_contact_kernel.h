@@ -51,16 +51,11 @@ struct wb_swept_tape_contact_kernel_model {
     struct wb_swept_range counted; /* stations, in sums */
 };
 
-struct wb_swept_tape_contact_kernel_call {
-    const struct wb_swept_tape_contact_kernel_model *model;
-    const struct wb_swept_cohesion_fields *fields;
-    void *history; /* (n_nodes x HISTORY x stride) */
-    double time_step;
-    struct wb_swept_tape_contact_sums *sums; /* added to */
-};
-
 struct wb_swept_tape_contact_kernel {
-    void (*add_forces)(const struct wb_swept_tape_contact_kernel_call *call);
+    /* Adds the forces of a step; `history` is (n_nodes x HISTORY x stride). */
+    void (*add_forces)(const struct wb_swept_tape_contact_kernel_model *model,
+                       const struct wb_swept_cohesion_fields *fields, void *history,
+                       double time_step, struct wb_swept_tape_contact_sums *sums);
 };
 
 WB_SWEPT_KERNEL_DECLARE(wb_swept_tape_contact_kernel);

@@ -82,10 +82,10 @@ INLINE void read_line(const struct wb_swept_tape_kernel_call *call, int k, int j
 
     for (int i = 0; i < 3; i++) {
         const size_t at = (size_t)(3 * k + i) * stride + (size_t)j;
-        const struct wide begin = load_wide(call->position + at);
-        const struct wide end = load_wide(call->position + at + 1);
-        const struct wide d_begin = load_wide(call->director + at);
-        const struct wide d_end = load_wide(call->director + at + 1);
+        const struct wide begin = load_wide(call->fields.position + at);
+        const struct wide end = load_wide(call->fields.position + at + 1);
+        const struct wide d_begin = load_wide(call->fields.director + at);
+        const struct wide d_end = load_wide(call->fields.director + at + 1);
         line->sum[i] = add(begin, end);
         line->along[i] = narrow(subtract(end, begin));
         line->director[i] = narrow(add(d_begin, d_end));
@@ -434,7 +434,7 @@ INLINE void write_line(const struct wb_swept_tape_kernel_call *call, int k, int 
     vec d[3];
 
     for (int i = 0; i < 3; i++)
-        d[i] = narrow(load_wide(call->director + (size_t)(3 * k + i) * stride + (size_t)j));
+        d[i] = narrow(load_wide(call->fields.director + (size_t)(3 * k + i) * stride + (size_t)j));
     const vec excess = (real)0.5 * dot(d, d) - (real)0.5, pull = stiffness * excess;
     if (m->n_along - j < LANES)
         clear_padding(m->n_along - j, line);
@@ -442,10 +442,11 @@ INLINE void write_line(const struct wb_swept_tape_kernel_call *call, int k, int 
         const size_t at = (size_t)(3 * k + i) * stride + (size_t)j;
         const vec f_end = line->f_sum[i] + line->f_along[i];
         const vec m_end = line->f_director[i] + line->f_turn[i];
-        store((real *)call->force + at,
+        store((real *)call->fields.force + at,
               line->f_sum[i] - line->f_along[i] + shift_in(load(carry + 2 * i * BLOCK), f_end));
-        store((real *)call->moment + at, line->f_director[i] - line->f_turn[i] - pull * d[i] +
-                                             shift_in(load(carry + (2 * i + 1) * BLOCK), m_end));
+        store((real *)call->fields.moment + at,
+              line->f_director[i] - line->f_turn[i] - pull * d[i] +
+                  shift_in(load(carry + (2 * i + 1) * BLOCK), m_end));
         store(carry + 2 * i * BLOCK, f_end);
         store(carry + (2 * i + 1) * BLOCK, m_end);
     }

@@ -72,8 +72,7 @@ struct wb_swept_tape_kernel_model {
 
 struct wb_swept_tape_kernel_call {
     const struct wb_swept_tape_kernel_model *model;
-    const double *position, *director;
-    void *force, *moment;
+    struct wb_swept_tape_fields fields;
     void *history;
     void *carry; /* (n_nodes x CARRY x WB_SWEPT_LANES), kept between calls */
     int first_block, end_block;
