@@ -127,7 +127,6 @@ static const double tape_poisson = 0.35;
 
 static const char *const packings[] = {"hexagon", "triangle", "densest", "places", NULL};
 static const char *const layouts[] = {"sleeve", "helix", NULL};
-static const char *const outlines[] = {"hull", "circle", NULL};
 static const char *const hands[] = {"right", "left", NULL};
 
 const char *wb_bundle_model_arrangement(const struct wb_bundle_model *model)
@@ -536,7 +535,7 @@ static enum wb_status read_taping(const struct wb_config_node *map,
         WB_CONFIG_OPTIONAL_CHOICE("hand", &settings->hand, hands),
         WB_CONFIG_OPTIONAL_NUMBER("poissons_ratio", &settings->poissons_ratio, 1.0, -0.99,
                                   largest_poisson),
-        WB_CONFIG_OPTIONAL_CHOICE("outline", &settings->outline, outlines),
+        WB_CONFIG_OPTIONAL_CHOICE("outline", &settings->outline, wb_bundle_uncertainty_outlines),
         WB_CONFIG_OPTIONAL_NUMBER("bond_reach_mm", &settings->reach, WB_MM, 0.0, 1.0),
     };
     return wb_config_map(map, keys, WB_COUNT(keys));
@@ -716,8 +715,9 @@ static enum wb_status read_ends(struct wb_bundle_model *model, const struct wb_c
     return WB_OK;
 }
 
-static enum wb_status read_mesh(struct wb_bundle_model *model, const struct wb_config_node *map)
+static enum wb_status read_mesh(void *into, const struct wb_config_node *map)
 {
+    struct wb_bundle_model *const model = into;
     struct wb_bundle_mesh *const mesh = &model->mesh[model->n_meshes];
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", mesh->name),
@@ -734,17 +734,6 @@ static enum wb_status read_mesh(struct wb_bundle_model *model, const struct wb_c
     if (mesh->core_quads % 2 != 0)
         return wb_config_refuse(map, "core_quads", "%d is not even", mesh->core_quads);
     model->n_meshes++;
-    return WB_OK;
-}
-
-static enum wb_status read_meshes(struct reader *reader, const struct wb_config_node *list)
-{
-    const int n = wb_config_length(list);
-    if (n < 1 || n > WB_BUNDLE_MODEL_MESHES)
-        return wb_config_refuse(reader->file.root, "meshes", "expected a list of 1 to %d meshes",
-                                WB_BUNDLE_MODEL_MESHES);
-    for (int i = 0; i < n; i++)
-        WB_TRY(read_mesh(reader->model, wb_config_item(list, i)));
     return WB_OK;
 }
 
@@ -803,15 +792,15 @@ static enum wb_status read_nodes(struct reader *reader, const struct root_nodes 
     if (nodes->ends)
         WB_TRY(read_ends(m, nodes->ends));
     if (nodes->meshes)
-        WB_TRY(read_meshes(reader, nodes->meshes));
+        WB_TRY(wb_model_file_list(reader->file.root, "meshes", nodes->meshes,
+                                  WB_BUNDLE_MODEL_MESHES, read_mesh, m));
     WB_TRY(read_run(reader, nodes->run));
     WB_TRY(read_loads(&m->loads, nodes->loads));
     if (nodes->published)
         WB_TRY(read_published(reader, nodes->published));
     m->has_uncertainty = nodes->uncertainty != NULL;
-    return m->has_uncertainty
-               ? wb_bundle_uncertainty_read(&m->uncertainty, nodes->uncertainty, outlines)
-               : WB_OK;
+    return m->has_uncertainty ? wb_bundle_uncertainty_read(&m->uncertainty, nodes->uncertainty)
+                              : WB_OK;
 }
 
 static enum wb_status read_root(struct reader *reader)

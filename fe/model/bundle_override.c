@@ -1,5 +1,6 @@
 #include <stddef.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/config.h"
 #include "base/units.h"
@@ -88,20 +89,14 @@ static enum wb_status override_run(const struct wb_bundle_run *given,
 {
     if (given->mesh[0] && !wb_bundle_model_mesh(model, given->mesh))
         return wb_fail(WB_ERR_ARGUMENT, "%s: there is no mesh '%s'", model->path, given->mesh);
-    if (given->mesh[0])
-        snprintf(run->mesh, sizeof run->mesh, "%s", given->mesh);
-    if (given->duration > 0.0)
-        run->duration = given->duration;
-    if (given->mass_scaling > 0.0)
-        run->mass_scaling = given->mass_scaling;
-    if (given->selective > 0.0)
-        run->selective = given->selective;
-    if (given->deflection > 0.0)
-        run->deflection = given->deflection;
-    if (given->rows > 0)
-        run->rows = given->rows;
-    if (given->cycles > 0)
-        run->cycles = given->cycles;
+    for (size_t i = 0; i < WB_BUNDLE_MODEL_RUN_SETTINGS; i++) {
+        const struct wb_setting *const row = &wb_bundle_model_run_settings[i];
+        const size_t size = row->type == WB_SETTING_TEXT     ? row->size
+                            : row->type == WB_SETTING_NUMBER ? sizeof(double)
+                                                             : sizeof(int);
+        if (wb_setting_is_given(row, given))
+            memcpy((char *)run + row->offset, (const char *)given + row->offset, size);
+    }
     return WB_OK;
 }
 

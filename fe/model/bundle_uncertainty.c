@@ -10,12 +10,15 @@
 /* A larger tolerance is taken as a typing error: the model does not hold for half the value. */
 static const double most_tolerance = 50.0; /* percent */
 
+const char *const wb_bundle_uncertainty_outlines[] = {"hull", "circle", NULL};
+
 static const char *const lattices[] = {"hexagon", "triangle", "densest", NULL};
 
 /* --- wires --- */
 
-static enum wb_status read_spread(struct wb_bundle_uncertainty *u, const struct wb_config_node *map)
+static enum wb_status read_spread(void *uncertainty, const struct wb_config_node *map)
 {
+    struct wb_bundle_uncertainty *const u = uncertainty;
     struct wb_bundle_spread *const spread = &u->wire[u->n_wires];
     char name[WB_PATH] = "", folder[WB_PATH];
     const struct wb_config_key keys[] = {
@@ -54,19 +57,6 @@ static enum wb_status read_spread(struct wb_bundle_uncertainty *u, const struct 
     return wb_file_join(spread->properties, name[0] == '/' ? "" : folder, name);
 }
 
-static enum wb_status read_wires(struct wb_bundle_uncertainty *u,
-                                 const struct wb_config_node *section,
-                                 const struct wb_config_node *list)
-{
-    const int n = wb_config_length(list);
-    if (n < 1 || n > WB_BUNDLE_UNCERTAINTY_WIRES)
-        return wb_config_refuse(section, "wires", "expected a list of 1 to %d wires",
-                                WB_BUNDLE_UNCERTAINTY_WIRES);
-    for (int i = 0; i < n; i++)
-        WB_TRY(read_spread(u, wb_config_item(list, i)));
-    return WB_OK;
-}
-
 /* --- tape and interface --- */
 
 static enum wb_status read_tape(struct wb_bundle_uncertainty *u, const struct wb_config_node *map)
@@ -96,9 +86,9 @@ static enum wb_status read_range(const struct wb_config_node *section,
 
 /* --- scenarios --- */
 
-static enum wb_status read_scenario(struct wb_bundle_uncertainty *u,
-                                    const struct wb_config_node *map, const char *const *outlines)
+static enum wb_status read_scenario(void *uncertainty, const struct wb_config_node *map)
 {
+    struct wb_bundle_uncertainty *const u = uncertainty;
     struct wb_bundle_variant *const variant = &u->scenario[u->n_scenarios];
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", variant->name),
@@ -106,7 +96,7 @@ static enum wb_status read_scenario(struct wb_bundle_uncertainty *u,
         WB_CONFIG_OPTIONAL_CHOICE("packing", &variant->packing, lattices),
         WB_CONFIG_OPTIONAL_INTEGER("layers", &variant->layers, 1, 20),
         WB_CONFIG_OPTIONAL_NUMBER("overlap_percent", &variant->lap, WB_PERCENT, 0.0, 95.0),
-        WB_CONFIG_OPTIONAL_CHOICE("outline", &variant->outline, outlines),
+        WB_CONFIG_OPTIONAL_CHOICE("outline", &variant->outline, wb_bundle_uncertainty_outlines),
         WB_CONFIG_OPTIONAL_NUMBER("bond_reach_mm", &variant->reach, WB_MM, 0.0, 1.0),
     };
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
@@ -124,22 +114,8 @@ static enum wb_status read_scenario(struct wb_bundle_uncertainty *u,
     return WB_OK;
 }
 
-static enum wb_status read_scenarios(struct wb_bundle_uncertainty *u,
-                                     const struct wb_config_node *section,
-                                     const struct wb_config_node *list, const char *const *outlines)
-{
-    const int n = wb_config_length(list);
-    if (n < 1 || n > WB_BUNDLE_UNCERTAINTY_SCENARIOS)
-        return wb_config_refuse(section, "scenarios", "expected a list of 1 to %d scenarios",
-                                WB_BUNDLE_UNCERTAINTY_SCENARIOS);
-    for (int i = 0; i < n; i++)
-        WB_TRY(read_scenario(u, wb_config_item(list, i), outlines));
-    return WB_OK;
-}
-
 enum wb_status wb_bundle_uncertainty_read(struct wb_bundle_uncertainty *u,
-                                          const struct wb_config_node *map,
-                                          const char *const *outlines)
+                                          const struct wb_config_node *map)
 {
     static const struct wb_config_key cohesion = {.name = "cohesive_stiffness_N_mm3",
                                                   .factor = WB_N_PER_MM3,
@@ -159,7 +135,7 @@ enum wb_status wb_bundle_uncertainty_read(struct wb_bundle_uncertainty *u,
         WB_CONFIG_OPTIONAL_NODE("scenarios", &scenarios),
     };
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    WB_TRY(read_wires(u, map, wires));
+    WB_TRY(wb_model_file_list(map, "wires", wires, WB_BUNDLE_UNCERTAINTY_WIRES, read_spread, u));
     if (tape)
         WB_TRY(read_tape(u, tape));
     if (stiffness)
@@ -168,5 +144,7 @@ enum wb_status wb_bundle_uncertainty_read(struct wb_bundle_uncertainty *u,
         WB_TRY(read_range(map, coefficient, &friction, u->friction));
     u->has_cohesion = stiffness != NULL;
     u->has_friction = coefficient != NULL;
-    return scenarios ? read_scenarios(u, map, scenarios, outlines) : WB_OK;
+    return scenarios ? wb_model_file_list(map, "scenarios", scenarios,
+                                          WB_BUNDLE_UNCERTAINTY_SCENARIOS, read_scenario, u)
+                     : WB_OK;
 }

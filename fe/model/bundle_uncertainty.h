@@ -73,11 +73,12 @@ struct wb_bundle_uncertainty {
     struct wb_bundle_variant scenario[WB_BUNDLE_UNCERTAINTY_SCENARIOS];
 };
 
-/* Reads the section of a file into a zeroed struct; `outlines` are the names of the tape's
- * outlines. Paths of properties are relative to the file's folder. Errors name file, line and key.
- */
+/* Names of the tape's outlines, in the order of `outline` above, then NULL. */
+extern const char *const wb_bundle_uncertainty_outlines[];
+
+/* Reads the section of a file into a zeroed struct. Paths of properties are relative to the file's
+ * folder. Errors name file, line and key. */
 WB_MUST_CHECK enum wb_status wb_bundle_uncertainty_read(struct wb_bundle_uncertainty *uncertainty,
-                                                        const struct wb_config_node *map,
-                                                        const char *const *outlines);
+                                                        const struct wb_config_node *map);
 
 #endif

@@ -52,6 +52,18 @@ enum wb_status wb_model_file_wire(struct wb_model_file *file, const struct wb_co
     return wb_wire_read(path, wire, NULL);
 }
 
+enum wb_status wb_model_file_list(
+    const struct wb_config_node *map, const char *key, const struct wb_config_node *list, int most,
+    enum wb_status (*read)(void *into, const struct wb_config_node *item), void *into)
+{
+    const int n = wb_config_length(list);
+    if (n < 1 || n > most)
+        return wb_config_refuse(map, key, "expected a list of 1 to %d %s", most, key);
+    for (int i = 0; i < n; i++)
+        WB_TRY(read(into, wb_config_item(list, i)));
+    return WB_OK;
+}
+
 enum wb_status wb_model_file_check_wire(const struct wb_config_node *map, const char *key,
                                         const struct wb_wire *wire, const char *but)
 {

@@ -34,6 +34,11 @@ WB_MUST_CHECK enum wb_status wb_model_file_wire(struct wb_model_file *file,
                                                 const struct wb_config_node *map, const char *key,
                                                 const char *name, struct wb_wire *wire);
 
+/* Reads the items of the list `key` of `map`, 1 to `most`; in messages its items have its name. */
+WB_MUST_CHECK enum wb_status wb_model_file_list(
+    const struct wb_config_node *map, const char *key, const struct wb_config_node *list, int most,
+    enum wb_status (*read)(void *into, const struct wb_config_node *item), void *into);
+
 /* Rejects a wire that has no properties (`but` ends the message) or is nearly incompressible. */
 WB_MUST_CHECK enum wb_status wb_model_file_check_wire(const struct wb_config_node *map,
                                                       const char *key, const struct wb_wire *wire,

@@ -54,8 +54,10 @@ static enum wb_status check_material(const struct reader *reader, const struct w
     return WB_OK;
 }
 
-static enum wb_status read_part(struct reader *reader, const struct wb_config_node *map, int index)
+static enum wb_status read_part(void *into, const struct wb_config_node *map)
 {
+    struct reader *const reader = into;
+    const int index = reader->model->n_parts;
     struct wb_wire_model_part *const part = &reader->model->part[index];
     char material[WB_PATH], path[WB_PATH]; /* a name, or a path */
     const struct wb_config_key keys[] = {
@@ -84,19 +86,16 @@ static enum wb_status read_part(struct reader *reader, const struct wb_config_no
     part->is_substitute = file.is_substitute;
     snprintf(part->material_name, sizeof part->material_name, "%s", file.name);
     snprintf(part->source, sizeof part->source, "%s", file.source);
+    reader->model->n_parts++;
     return WB_OK;
 }
 
 static enum wb_status read_parts(struct reader *reader, const struct wb_config_node *parts)
 {
     struct wb_wire_model *const m = reader->model;
-    const int n = wb_config_length(parts);
-    if (n < 1 || n > WB_WIRE_MODEL_PARTS)
-        return wb_config_refuse(reader->file.root, "parts", "expected a list of 1 to %d parts",
-                                WB_WIRE_MODEL_PARTS);
-    for (int i = 0; i < n; i++)
-        WB_TRY(read_part(reader, wb_config_item(parts, i), i));
-    m->n_parts = n;
+    WB_TRY(wb_model_file_list(reader->file.root, "parts", parts, WB_WIRE_MODEL_PARTS, read_part,
+                              reader));
+    const int n = m->n_parts;
     if (!(fabs(m->part[n - 1].outer_diameter - m->wire.outer_diameter) <=
           1e-9 * m->wire.outer_diameter))
         return wb_config_refuse(wb_config_item(parts, n - 1), "outer_diameter_mm",

@@ -11,11 +11,9 @@
 
 /* --- sections --- */
 
-/* Any mesh; `node` and `quad` are copied. WB_ERR_ARGUMENT if a quadrilateral is not convex and
- * counter-clockwise or a node does not exist. */
-WB_MUST_CHECK enum wb_status wb_swept_section_init(struct wb_swept_section *section, int n_nodes,
-                                                   const double (*node)[2], int n_quads,
-                                                   const int (*quad)[4]);
+/* Sets area, shares and the central node, which is the one nearest to the centroid, of a section
+ * whose mesh is filled in. */
+void wb_swept_section_integrate(struct wb_swept_section *section);
 
 /* --- hexahedra --- */
 

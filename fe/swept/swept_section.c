@@ -10,8 +10,7 @@
 #define WB_LOG_DOMAIN "swept"
 
 enum {
-    MAX_DENSITY = 32,
-    MAX_NODES = 1 << 20
+    MAX_DENSITY = 32
 };
 
 /* Factors on the distance of the core's corners from the centre, relative to equal widths of core
@@ -120,21 +119,7 @@ void wb_swept_section_release(struct wb_swept_section *section)
     *section = (struct wb_swept_section){0};
 }
 
-static bool is_convex(const struct wb_swept_section *section, const int *quad)
-{
-    for (int a = 0; a < 4; a++) {
-        const double *p = section->node[quad[a]], *next = section->node[quad[(a + 1) % 4]];
-        const double *before = section->node[quad[(a + 3) % 4]];
-        const double turn = (next[0] - p[0]) * (before[1] - p[1]) - //
-                            (next[1] - p[1]) * (before[0] - p[0]);
-        if (!wb_swept_is_positive(turn))
-            return false;
-    }
-    return true;
-}
-
-/* Area and shares; the central node is the one nearest to the centroid. */
-static void integrate(struct wb_swept_section *section)
+void wb_swept_section_integrate(struct wb_swept_section *section)
 {
     double moment[2] = {0.0, 0.0}, nearest = (double)INFINITY;
 
@@ -160,32 +145,6 @@ static void integrate(struct wb_swept_section *section)
             section->centre = k;
         }
     }
-}
-
-enum wb_status wb_swept_section_init(struct wb_swept_section *section, int n_nodes,
-                                     const double (*node)[2], int n_quads, const int (*quad)[4])
-{
-    if (n_nodes < 4 || n_nodes > MAX_NODES || n_quads < 1 || n_quads > MAX_NODES)
-        return wb_fail(
-            WB_ERR_ARGUMENT,
-            "the section has %d nodes and %d elements: expected 4 to %d nodes and 1 to %d elements",
-            n_nodes, n_quads, MAX_NODES, MAX_NODES);
-    for (int i = 0; i < 4 * n_quads; i++) {
-        if (quad[i / 4][i % 4] < 0 || quad[i / 4][i % 4] >= n_nodes)
-            return wb_fail(WB_ERR_ARGUMENT, "element %d of the section: node %d: expected 0 to %d",
-                           i / 4, quad[i / 4][i % 4], n_nodes - 1);
-    }
-    allocate(section, n_nodes, n_quads, 0);
-    memcpy(section->node, node, (size_t)n_nodes * sizeof *node);
-    memcpy(section->quad, quad, (size_t)n_quads * sizeof *quad);
-    for (int e = 0; e < n_quads; e++) {
-        if (!is_convex(section, quad[e])) {
-            wb_swept_section_release(section);
-            return wb_fail(WB_ERR_ARGUMENT, "element %d of the section is not convex", e);
-        }
-    }
-    integrate(section);
-    return WB_OK;
 }
 
 /* A point of the core's grid, u and v from -1 to 1: between a square and a disc, with corners at
@@ -277,7 +236,7 @@ enum wb_status wb_swept_section_init_circle(struct wb_swept_section *section, do
         }
     }
     number_circle(section, core, rings);
-    integrate(section);
+    wb_swept_section_integrate(section);
     wb_swept_section_scale(section, 0.5 * diameter);
     section->centre = core / 2 * (core + 1) + core / 2;
     return WB_OK;

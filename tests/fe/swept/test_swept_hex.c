@@ -492,7 +492,7 @@ static void hourglass_modes_are_stiff(void **unused)
         {0.0, 0.05e-3}, {0.5e-3, -0.03e-3}, {0.6e-3, 0.5e-3}, {-0.1e-3, 0.4e-3}};
     static const int quad[1][4] = {{0, 1, 2, 3}};
     struct wb_swept_section section;
-    assert_int_equal(wb_swept_section_init(&section, 4, at, 1, quad), WB_OK);
+    assert_int_equal(swept_section_init(&section, 4, at, 1, quad), WB_OK);
     for (int f = 0; f < 2; f++) {
         const struct wb_swept_hex_model model = small_model(&section, 1, formulations[f]);
         struct swept_body body = swept_body_create(&model);
@@ -610,9 +610,9 @@ static void invalid_models_are_rejected(void **unused)
     static const int clockwise[1][4] = {{0, 3, 2, 1}}, missing[1][4] = {{0, 1, 2, 4}};
     static const double dart[4][2] = {{0, 0}, {1, 0}, {0.2, 0.2}, {0, 1}};
     static const int right[1][4] = {{0, 1, 2, 3}};
-    assert_int_equal(wb_swept_section_init(&broken, 4, at, 1, clockwise), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_swept_section_init(&broken, 4, at, 1, missing), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_swept_section_init(&broken, 4, dart, 1, right), WB_ERR_ARGUMENT);
+    assert_int_equal(swept_section_init(&broken, 4, at, 1, clockwise), WB_ERR_ARGUMENT);
+    assert_int_equal(swept_section_init(&broken, 4, at, 1, missing), WB_ERR_ARGUMENT);
+    assert_int_equal(swept_section_init(&broken, 4, dart, 1, right), WB_ERR_ARGUMENT);
     assert_int_equal(wb_swept_section_init_circle(&broken, 1e-3, 3, 1), WB_ERR_ARGUMENT);
     assert_int_equal(wb_swept_section_init_circle(&broken, 0.0, 2, 1), WB_ERR_ARGUMENT);
     wb_log_set_sink(NULL, NULL);

@@ -111,9 +111,9 @@ static struct wb_swept_section quarter_of_circle(double diameter, int core, int 
         }
         quads++;
     }
-    assert_int_equal(wb_swept_section_init(&quarter, nodes, (const double(*)[2])at, quads,
-                                           (const int(*)[4])quad),
-                     WB_OK);
+    assert_int_equal(
+        swept_section_init(&quarter, nodes, (const double(*)[2])at, quads, (const int(*)[4])quad),
+        WB_OK);
     wb_swept_section_release(&full);
     return quarter;
 }
