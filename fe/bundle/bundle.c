@@ -852,7 +852,9 @@ static void restore_part(struct wb_bundle *bundle, int number, struct wb_checkpo
 void wb_bundle_visit(struct wb_bundle *bundle, struct wb_checkpoint *checkpoint)
 {
     wb_checkpoint_visit_member(checkpoint, bundle, weight_zero);
-    wb_bundle_part_visit_progress(bundle->whole, checkpoint);
+    wb_checkpoint_visit_member(checkpoint, bundle->whole, tip_path);
+    wb_checkpoint_visit_member(checkpoint, bundle->whole, clock);
+    wb_checkpoint_visit_member(checkpoint, bundle->whole, account);
     for (int i = 0; i < bundle->count; i++) {
         if (checkpoint->restores)
             restore_part(bundle, i, checkpoint);

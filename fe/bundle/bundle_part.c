@@ -468,10 +468,3 @@ void wb_bundle_part_visit_fields(struct wb_bundle_part *part, struct wb_checkpoi
     if (part->cap)
         wb_bundle_cap_visit(part->cap, checkpoint);
 }
-
-void wb_bundle_part_visit_progress(struct wb_bundle_part *part, struct wb_checkpoint *c)
-{
-    wb_checkpoint_visit_member(c, part, tip_path);
-    wb_checkpoint_visit_member(c, part, clock);
-    wb_checkpoint_visit_member(c, part, account);
-}

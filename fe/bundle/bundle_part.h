@@ -84,7 +84,5 @@ double wb_bundle_part_target(const struct wb_bundle_part *part, double time);
 
 /* Saves or restores fields and the states of materials and contacts. */
 void wb_bundle_part_visit_fields(struct wb_bundle_part *part, struct wb_checkpoint *checkpoint);
-/* Saves or restores path, clock and account. */
-void wb_bundle_part_visit_progress(struct wb_bundle_part *part, struct wb_checkpoint *checkpoint);
 
 #endif

@@ -170,26 +170,21 @@ static void identify(const struct run *r, char text[MAX_IDENTITY])
              wb_swept_instructions_name(WB_SWEPT_BEST), wb_version_revision(), r->program);
 }
 
+/* Saves or restores the members of a struct from an offset on. */
+static void visit_from(struct wb_checkpoint *c, void *object, size_t offset, size_t size)
+{
+    wb_checkpoint_visit(c, "members", (char *)object + offset, size - offset);
+}
+
 /* Saves or restores the contents of the result; its memory stays. */
 static void visit_result(struct wb_bundle_result *h, struct wb_checkpoint *c)
 {
     const size_t rows = (size_t)h->capacity, places = rows * (size_t)h->n_shape;
 
     wb_checkpoint_enter(c, "result");
-    wb_checkpoint_visit_member(c, h, n_rows);
+    visit_from(c, h, offsetof(struct wb_bundle_result, n_rows), sizeof *h);
     wb_checkpoint_visit(c, "rows", h->rows, rows * sizeof *h->rows);
     wb_checkpoint_visit(c, "shape", h->shape, places * sizeof *h->shape);
-    wb_checkpoint_visit_member(c, h, converged);
-    wb_checkpoint_visit_member(c, h, reason);
-    wb_checkpoint_visit_member(c, h, zero_force);
-    wb_checkpoint_visit_member(c, h, duration);
-    wb_checkpoint_visit_member(c, h, chosen);
-    wb_checkpoint_visit_member(c, h, exceeded);
-    wb_checkpoint_visit_member(c, h, attempts);
-    wb_checkpoint_visit_member(c, h, all_steps);
-    wb_checkpoint_visit_member(c, h, largest);
-    wb_checkpoint_visit_member(c, h, wall);
-    wb_checkpoint_visit_member(c, h, cpu);
     wb_checkpoint_leave(c);
 }
 
@@ -204,8 +199,7 @@ static void visit_run(struct run *r, struct wb_checkpoint *c)
         observer->visit(observer->context, c);
         wb_checkpoint_leave(c);
     }
-    wb_checkpoint_visit(c, "progress", (char *)r + offsetof(struct run, state),
-                        sizeof *r - offsetof(struct run, state));
+    visit_from(c, r, offsetof(struct run, state), sizeof *r);
 }
 
 static enum wb_status save(struct run *r)

@@ -69,11 +69,13 @@ struct wb_bundle_extremes {
 };
 
 struct wb_bundle_result {
-    int n_rows, capacity;
+    int capacity, n_shape;
     struct wb_bundle_row *rows; /* (n_rows), owned; only completed rows */
-    int n_shape;
-    double *shape_s;         /* (n_shape) m, reference arc lengths, owned */
-    double (*shape)[3];      /* (n_rows x n_shape), m, owned */
+    double *shape_s;            /* (n_shape) m, reference arc lengths, owned */
+    double (*shape)[3];         /* (n_rows x n_shape), m, owned */
+
+    /* Everything from here on is saved in checkpoints. */
+    int n_rows;
     bool converged;          /* false: ends early */
     bool stopped;            /* by the observer */
     bool kept;               /* stopped, and the checkpoint contains everything up to then */

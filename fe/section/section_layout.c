@@ -162,7 +162,6 @@ static void place_wires(struct layout_work *work)
             continue;
         work->place[i] = layout->n_wires;
         layout->wires[layout->n_wires++] = (struct wb_section_wire){
-            .wire = i,
             .type = work->model->type_of[i],
             .unknown = layout->n_unknowns++,
             .y = p->wire[i].y,

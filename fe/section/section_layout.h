@@ -20,7 +20,6 @@
 
 /* A wire, or a pair of image wires. */
 struct wb_section_wire {
-    int wire;      /* of the packing */
     int type;      /* of the model */
     int unknown;   /* of its slip */
     double y, z;   /* m */

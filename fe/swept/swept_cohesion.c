@@ -36,8 +36,8 @@ struct wb_swept_cohesion {
 
 /* The bond point of a ring node in the reference state. */
 struct facing {
-    int to, partner[2];
-    double weight, offset, area, outwards;
+    struct wb_swept_cohesion_strip strip; /* the nodes, common to a strip */
+    double weight, offset, area;
 };
 
 static const struct wb_swept_layout *layout_of(const struct wb_swept_cohesion *c)
@@ -74,8 +74,7 @@ static void try_segment(const struct ray *ray, const double a[2], const double b
         return;
     best->offset = o;
     best->weight = w;
-    best->partner[0] = nodes[0];
-    best->partner[1] = nodes[1];
+    memcpy(best->strip.partner, nodes, sizeof best->strip.partner);
 }
 
 static void face_wire(const struct ray *ray, const struct wb_swept_wire *wire, struct facing *best)
@@ -111,7 +110,7 @@ static enum wb_status find_facing(const struct wb_swept_cohesion *c,
 {
     const struct ray ray = ray_of(c, k, j);
 
-    *out = (struct facing){.to = bond->to, .offset = (double)INFINITY};
+    *out = (struct facing){.strip = {.node = k, .to = bond->to}, .offset = (double)INFINITY};
     if (bond->to == WB_SWEPT_COHESION_TAPE)
         find_winding_below(c, k, j, &ray, out);
     else
@@ -122,21 +121,18 @@ static enum wb_status find_facing(const struct wb_swept_cohesion *c,
                        "line along its director",
                        k, j);
     out->area = bond->share * wb_swept_tape_area(c->tape, k, j);
-    out->outwards = out->offset < 0.0 ? -1.0 : 1.0;
+    out->strip.outwards = out->offset < 0.0 ? -1.0 : 1.0;
     return WB_OK;
 }
 
 /* --- strips --- */
 
-/* Finds the strip in the block of station j that has the same bond nodes as `f`, or adds one. */
-static int find_strip(struct wb_swept_cohesion *c, int k, const struct facing *f, int from)
+/* Finds the strip with the nodes of a bond, from strip `from` on, or adds one. */
+static int find_strip(struct wb_swept_cohesion *c, const struct facing *f, int from)
 {
-    for (int s = c->n_strips - 1; s >= from; s--) {
-        const struct wb_swept_cohesion_strip *strip = &c->strip[s];
-        if (strip->node == k && strip->to == f->to && strip->partner[0] == f->partner[0] &&
-            strip->partner[1] == f->partner[1] && strip->outwards == f->outwards)
+    for (int s = c->n_strips - 1; s >= from; s--)
+        if (memcmp(&c->strip[s], &f->strip, sizeof f->strip) == 0)
             return s;
-    }
     if (c->n_strips == c->room) {
         c->room = 2 * c->room + 64;
         const size_t room = (size_t)c->room;
@@ -145,8 +141,7 @@ static int find_strip(struct wb_swept_cohesion *c, int k, const struct facing *f
     }
     const int added = c->n_strips++;
     memset(c->numbers + (size_t)added * ROWS * LANES, 0, ROWS * LANES * sizeof *c->numbers);
-    c->strip[added] =
-        (struct wb_swept_cohesion_strip){k, f->to, {f->partner[0], f->partner[1]}, f->outwards};
+    c->strip[added] = f->strip;
     return added;
 }
 
@@ -166,7 +161,7 @@ static enum wb_status add_bond(struct wb_swept_cohesion *c, const struct wb_swep
             "tape, and a share above 0, at most 1",
             k, bond->to, bond->share, c->n_wires - 1, WB_SWEPT_COHESION_TAPE);
     WB_TRY(find_facing(c, wires, bond, k, j, &f));
-    const int s = find_strip(c, k, &f, from);
+    const int s = find_strip(c, &f, from);
     double *rows = c->numbers + (size_t)s * ROWS * LANES + j % LANES;
     rows[WB_SWEPT_COHESION_WEIGHT * LANES] = f.weight;
     rows[WB_SWEPT_COHESION_OFFSET * LANES] = f.offset;
