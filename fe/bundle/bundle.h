@@ -14,7 +14,7 @@
  * mass.
  *
  * The bundle may be cut along its axis into parts, which threads and the ranks of an MPI run
- * compute in parallel (fe/bundle/bundle.c). With several ranks every rank calls each function
+ * compute in parallel (fe/bundle/bundle_parts.h). With several ranks every rank calls each function
  * that takes a bundle, and gets the same results. The number of parts changes results by round-off
  * only.
  *
@@ -75,9 +75,6 @@ WB_MUST_CHECK enum wb_status wb_bundle_create(struct wb_bundle **out,
                                               const struct wb_bundle_model *model,
                                               const struct wb_bundle_settings *settings);
 void wb_bundle_destroy(struct wb_bundle *bundle); /* accepts NULL */
-
-/* Number of parts, in all ranks, into which a bundle would be cut. `mesh` NULL: the model's own. */
-int wb_bundle_parts_of(const struct wb_bundle_model *model, const char *mesh, int threads);
 
 /* Number of parts that compute the bundle, in all ranks. */
 int wb_bundle_parts(const struct wb_bundle *bundle);

@@ -1,7 +1,7 @@
 /* A part of a bundle: its bodies over some of the stations, with contact, bonds of the tape, and
  * the capped end, and their time integration.
  *
- * A bundle is a row of one or more parts (fe/bundle/bundle.c); the part that owns the last
+ * A bundle is a row of one or more parts (fe/bundle/bundle_parts.h); the part that owns the last
  * station drives the tip. A part is independent of its neighbours: it also computes a halo of
  * stations that they own, whose positions bundle.c copies.
  */

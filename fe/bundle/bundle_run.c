@@ -14,6 +14,7 @@
 #include "base/memory.h"
 #include "base/units.h"
 #include "base/version.h"
+#include "fe/bundle/bundle_parts.h"
 #include "fe/model/model_inputs.h"
 #include "fe/swept/swept.h"
 #include "fe/team/team.h"

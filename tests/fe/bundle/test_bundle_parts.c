@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "fe/bundle/bundle_parts.h"
 #include "fe/bundle/bundle_private.h"
 #include "fe/team/team.h"
 #include "tests/fe/bundle/outside.h"
