@@ -1,4 +1,4 @@
-#include "fe/section/section_beam.h"
+#include "fe/section/section_beam_private.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,6 +9,27 @@ int wb_section_beam_index(const struct wb_section_beam *beam, int station, int u
         return -1;
     const bool is_cap = station == beam->n_elements && beam->model->tip == WB_BUNDLE_TIP_CAPPED;
     return (station - 1) * beam->per_station + (is_cap && unknown > 0 ? 1 : unknown);
+}
+
+/* Value of an unknown in a vector of unknowns; 0 if it is fixed. */
+static double value_of(const struct wb_section_beam *beam, const double *u, int station,
+                       int unknown)
+{
+    const int index = wb_section_beam_index(beam, station, unknown);
+    return index < 0 ? 0.0 : u[index];
+}
+
+/* Tributary length of a station, m: half an element at the tip. */
+static double share_of(const struct wb_section_beam *beam, int station)
+{
+    return station == beam->n_elements ? 0.5 * beam->h : beam->h;
+}
+
+/* Volume of a tape segment in an element, including its image, m3. */
+static double volume_of(const struct wb_section_beam *beam,
+                        const struct wb_section_segment *segment)
+{
+    return segment->weight * segment->thickness * segment->length * beam->h;
 }
 
 static void add(const struct wb_section_beam *beam, double *to, int station, int unknown,
@@ -22,24 +43,22 @@ static void add(const struct wb_section_beam *beam, double *to, int station, int
 /* Derivative of an unknown along an element. */
 static double slope_of(const struct wb_section_beam *beam, int element, int unknown)
 {
-    return (wb_section_beam_value(beam, beam->u, element + 1, unknown) -
-            wb_section_beam_value(beam, beam->u, element, unknown)) /
+    return (value_of(beam, beam->u, element + 1, unknown) -
+            value_of(beam, beam->u, element, unknown)) /
            beam->h;
 }
 
 /* Rotation at the middle of an element. */
 static double turned_at(const struct wb_section_beam *beam, int element)
 {
-    return 0.5 * (wb_section_beam_value(beam, beam->u, element, 0) +
-                  wb_section_beam_value(beam, beam->u, element + 1, 0));
+    return 0.5 * (value_of(beam, beam->u, element, 0) + value_of(beam, beam->u, element + 1, 0));
 }
 
 /* Difference of two unknowns at a station. */
 static double slip_of(const struct wb_section_beam *beam, const double *u, int station,
                       const int unknown[2])
 {
-    return wb_section_beam_value(beam, u, station, unknown[0]) -
-           wb_section_beam_value(beam, u, station, unknown[1]);
+    return value_of(beam, u, station, unknown[0]) - value_of(beam, u, station, unknown[1]);
 }
 
 /* --- evaluation --- */
@@ -70,10 +89,10 @@ static struct wb_section_beam_wall find_wall(const struct wb_section_beam *beam,
                                              const struct wb_section_segment *segment)
 {
     const double *const u = beam->u;
-    const double a0 = wb_section_beam_value(beam, u, element, segment->unknown[0]);
-    const double b0 = wb_section_beam_value(beam, u, element, segment->unknown[1]);
-    const double a1 = wb_section_beam_value(beam, u, element + 1, segment->unknown[0]);
-    const double b1 = wb_section_beam_value(beam, u, element + 1, segment->unknown[1]);
+    const double a0 = value_of(beam, u, element, segment->unknown[0]);
+    const double b0 = value_of(beam, u, element, segment->unknown[1]);
+    const double a1 = value_of(beam, u, element + 1, segment->unknown[0]);
+    const double b1 = value_of(beam, u, element + 1, segment->unknown[1]);
     struct wb_section_beam_wall w = {
         .e = 0.5 * (a1 + b1 - a0 - b0) / beam->h - segment->y * slope_of(beam, element, 0),
         .g = 0.5 * (b0 + b1 - a0 - a1) / segment->length,
@@ -127,7 +146,7 @@ static void evaluate_segment(struct wb_section_beam *beam, int element, int s)
     const size_t at = (size_t)element * (size_t)beam->layout.n_segments + (size_t)s;
     const struct wb_section_beam_wall wall = find_wall(beam, element, segment);
     const struct segment_shape shape = shape_of(beam, element, segment);
-    const double volume = wb_section_beam_volume(beam, segment);
+    const double volume = volume_of(beam, segment);
     const double *const stress = beam->wall[at].stress;
     double by_e = 0.0, by_g = 0.0;
 
@@ -152,7 +171,7 @@ static double sticking_friction(const struct wb_section_beam *beam, int station,
     const double slip = slip_of(beam, beam->u, station, c->unknown) -
                         slip_of(beam, beam->committed, station, c->unknown);
     return beam->friction_before[at] +
-           beam->settings.slip_stiffness * wb_section_beam_share(beam, station) * slip;
+           beam->settings.slip_stiffness * share_of(beam, station) * slip;
 }
 
 static double limit_of(const struct wb_section_beam *beam, size_t contact)
@@ -172,7 +191,7 @@ static void evaluate_station(struct wb_section_beam *beam, int station)
 
     for (int i = 0; i < layout->n_bonds; i++) {
         const struct wb_section_bond *const bond = &layout->bonds[i];
-        const double force = bond->stiffness * wb_section_beam_share(beam, station) *
+        const double force = bond->stiffness * share_of(beam, station) *
                              slip_of(beam, beam->u, station, bond->unknown);
         add(beam, beam->residual, station, bond->unknown[0], force);
         add(beam, beam->residual, station, bond->unknown[1], -force);
@@ -291,8 +310,7 @@ static void find_limits(struct wb_section_beam *beam)
         const double *const next = station < beam->n_elements ? here + n : here;
         double *const limit = beam->limit + (size_t)(station - 1) * (size_t)n;
         for (int i = 0; i < n; i++)
-            limit[i] =
-                beam->friction * wb_section_beam_share(beam, station) * 0.5 * (here[i] + next[i]);
+            limit[i] = beam->friction * share_of(beam, station) * 0.5 * (here[i] + next[i]);
     }
 }
 
@@ -380,7 +398,7 @@ static void add_segment(struct wb_section_beam *beam, int element, int s)
     const struct wb_section_sheet_response *const r = &beam->wall[at];
     const struct wb_section_beam_wall wall = beam->walls[at];
     const struct segment_shape shape = shape_of(beam, element, segment);
-    const double volume = wb_section_beam_volume(beam, segment);
+    const double volume = volume_of(beam, segment);
     double ee = 0.0, eg = 0.0, gg = 0.0;
     double matrix[MOST][MOST];
 
@@ -416,15 +434,14 @@ static void add_station(struct wb_section_beam *beam, int station)
 
     for (int i = 0; i < layout->n_bonds; i++)
         add_spring(beam, station, layout->bonds[i].unknown,
-                   layout->bonds[i].stiffness * wb_section_beam_share(beam, station));
+                   layout->bonds[i].stiffness * share_of(beam, station));
     for (int i = 0; i < layout->n_contacts && has_friction(beam); i++) {
         const struct wb_section_contact *const c = &layout->contacts[i];
         const size_t at = (size_t)(station - 1) * (size_t)layout->n_contacts + (size_t)i;
         if (c->unknown[0] != c->unknown[1] &&
             fabs(sticking_friction(beam, station, i)) <= limit_of(beam, at))
             add_spring(beam, station, c->unknown,
-                       c->weight * beam->settings.slip_stiffness *
-                           wb_section_beam_share(beam, station));
+                       c->weight * beam->settings.slip_stiffness * share_of(beam, station));
     }
 }
 
@@ -458,10 +475,8 @@ static double change_along(const struct wb_section_beam *beam, int element, int 
 {
     const double *const u = beam->u, *const from = beam->committed;
 
-    return wb_section_beam_value(beam, u, element + 1, unknown) -
-           wb_section_beam_value(beam, u, element, unknown) -
-           wb_section_beam_value(beam, from, element + 1, unknown) +
-           wb_section_beam_value(beam, from, element, unknown);
+    return value_of(beam, u, element + 1, unknown) - value_of(beam, u, element, unknown) -
+           value_of(beam, from, element + 1, unknown) + value_of(beam, from, element, unknown);
 }
 
 /* Adds the energies that an element took up since the last commit. */
@@ -483,7 +498,7 @@ static void add_element_energies(struct wb_section_beam *beam, int element)
     }
     for (int s = 0; s < layout->n_segments; s++) {
         const size_t at = (size_t)element * (size_t)layout->n_segments + (size_t)s;
-        const double volume = wb_section_beam_volume(beam, &layout->segments[s]);
+        const double volume = volume_of(beam, &layout->segments[s]);
         for (int i = 0; i < 3; i++)
             e->tape += 0.5 * volume * (beam->wall[at].stress[i] + beam->stress_before[at][i]) *
                        (beam->walls[at].strain[i] - beam->strain_before[at][i]);
@@ -497,8 +512,7 @@ static void add_station_energies(struct wb_section_beam *beam, int station)
     for (int i = 0; i < layout->n_bonds; i++) {
         const struct wb_section_bond *const bond = &layout->bonds[i];
         const double slip = slip_of(beam, beam->u, station, bond->unknown);
-        beam->energies.bonds +=
-            0.5 * bond->stiffness * wb_section_beam_share(beam, station) * slip * slip;
+        beam->energies.bonds += 0.5 * bond->stiffness * share_of(beam, station) * slip * slip;
     }
     for (int i = 0; i < layout->n_contacts; i++) {
         const struct wb_section_contact *const c = &layout->contacts[i];
@@ -506,8 +520,8 @@ static void add_station_energies(struct wb_section_beam *beam, int station)
         double slip = 0.0;
         for (int end = 0; end < 2; end++)
             slip += (end == 0 ? 1.0 : -1.0) *
-                    (wb_section_beam_value(beam, beam->u, station, c->unknown[end]) -
-                     wb_section_beam_value(beam, beam->committed, station, c->unknown[end]));
+                    (value_of(beam, beam->u, station, c->unknown[end]) -
+                     value_of(beam, beam->committed, station, c->unknown[end]));
         beam->energies.friction +=
             0.5 * c->weight * (beam->friction_now[at] + beam->friction_before[at]) * slip;
     }
@@ -563,8 +577,7 @@ void wb_section_beam_place(const struct wb_section_beam *beam, double s, double 
 {
     *x = *y = *angle = 0.0;
     for (int m = 0; m < beam->n_elements; m++) {
-        const double from = wb_section_beam_value(beam, beam->u, m, 0),
-                     to = wb_section_beam_value(beam, beam->u, m + 1, 0);
+        const double from = value_of(beam, beam->u, m, 0), to = value_of(beam, beam->u, m + 1, 0);
         const double part = fmin(fmax(s / beam->h - m, 0.0), 1.0);
         *x += part * beam->h * cos(0.5 * (from + to));
         *y += part * beam->h * sin(0.5 * (from + to));

@@ -130,30 +130,6 @@ wb_section_beam_create(struct wb_section_beam **out, const struct wb_bundle_mode
                        const struct wb_section_beam_settings *settings);
 void wb_section_beam_destroy(struct wb_section_beam *beam); /* accepts NULL */
 
-/* Index of an unknown of a station (0 to n_elements); -1 if it is fixed. */
-int wb_section_beam_index(const struct wb_section_beam *beam, int station, int unknown);
-
-/* Value of an unknown in a vector of unknowns; 0 if it is fixed. */
-static inline double wb_section_beam_value(const struct wb_section_beam *beam, const double *u,
-                                           int station, int unknown)
-{
-    const int index = wb_section_beam_index(beam, station, unknown);
-    return index < 0 ? 0.0 : u[index];
-}
-
-/* Tributary length of a station, m: half an element at the tip. */
-static inline double wb_section_beam_share(const struct wb_section_beam *beam, int station)
-{
-    return station == beam->n_elements ? 0.5 * beam->h : beam->h;
-}
-
-/* Volume of a tape segment in an element, including its image, m3. */
-static inline double wb_section_beam_volume(const struct wb_section_beam *beam,
-                                            const struct wb_section_segment *segment)
-{
-    return segment->weight * segment->thickness * segment->length * beam->h;
-}
-
 /* Computes the residual and the other results for the trial state. `press`: updates the friction
  * limits from that state; otherwise the last limits stay. */
 void wb_section_beam_evaluate(struct wb_section_beam *beam,

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "fe/section/section_beam_private.h"
 #include "fe/trial/cantilever.h"
 #include "tests/fe/bundle/static_reference.h"
 #include "tests/fe/section/section_fixture.h"
