@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "base/units.h"
+
 #define WB_LOG_DOMAIN "cycle"
 
 enum {
@@ -13,16 +15,29 @@ enum {
  * rad. */
 static const double first_reach = 0.02;
 
+static const double unstated_deviation = 0.3 * WB_MM;
+
+/* A number of the alignment's check of the natural shape; false if there is none. */
+static bool get_number(const struct wb_dataset *dataset, const char *key, double *value)
+{
+    const struct wb_json *const checks = wb_json_get(dataset->document, "checks");
+    return wb_json_get_number(wb_json_get(checks, "natural_shape"), key, value);
+}
+
+double wb_cycle_bow_deviation(const struct wb_dataset *dataset)
+{
+    double value;
+    return get_number(dataset, "bow_uncertainty_mm", &value) && value > 0.0 ? value * WB_MM
+                                                                            : unstated_deviation;
+}
+
 /* Whether the alignment took the zero of force from the cell without load, so that tensions are
  * absolute. */
 static bool is_absolute(const struct wb_dataset *dataset)
 {
     double bow;
-    const struct wb_json *const checks =
-        dataset->document ? wb_json_get(dataset->document, "checks") : NULL;
-    const struct wb_json *const shape = checks ? wb_json_get(checks, "natural_shape") : NULL;
-    return !dataset->info.is_simulation && dataset->info.n_natural_shape > 0 && shape &&
-           wb_json_get_number(shape, "bow_from_force_mm", &bow);
+    return !dataset->info.is_simulation && dataset->info.n_natural_shape > 0 &&
+           get_number(dataset, "bow_from_force_mm", &bow);
 }
 
 /* Computed minus measured tension of the only point, N; decreases with the angle. NaN: not reached.

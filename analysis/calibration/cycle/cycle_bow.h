@@ -22,4 +22,7 @@ WB_MUST_CHECK enum wb_status wb_cycle_bow_find(double *angle, const struct wb_da
                                                const struct wb_law *law,
                                                const struct wb_cycle_model_settings *settings);
 
+/* Standard deviation of the bow of the alignment, m; 0.3 mm if the alignment does not state it. */
+double wb_cycle_bow_deviation(const struct wb_dataset *dataset);
+
 #endif

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "analysis/calibration/cycle/cycle_bow.h"
 #include "analysis/calibration/cycle/cycle_check_private.h"
 #include "analysis/calibration/cycle/cycle_fit.h"
 #include "analysis/calibration/cycle/cycle_model.h"
@@ -76,9 +77,8 @@ static const double least_missed = 2.3e-3, explained_part = 0.6, free_place = 10
 static const double largest_explained = 2e-3;
 /* Below this tension (N) the strand may be slack. */
 static const double slack = 2.5e-3;
-/* Limits in standard deviations between two estimates of the bow; and the standard deviation of an
- * alignment that does not state it. */
-static const double bow_limit = 3.0, bow_doubt = 5.0, bow_deviation = 0.3 * WB_MM;
+/* Limits in standard deviations between two estimates of the bow. */
+static const double bow_limit = 3.0, bow_doubt = 5.0;
 /* Least part of the largest force of a bent wire. */
 static const double bent_share = 0.2;
 /* Least fall of the force at rest that is reported, in standard errors and as a part of the largest
@@ -105,6 +105,7 @@ const char *wb_cycle_check_severity_name(enum wb_cycle_check_severity severity)
     return names[severity];
 }
 
+/* Adds a remark. */
 static void __attribute__((format(printf, 4, 5)))
 say(struct wb_cycle_remarks *remarks, enum wb_cycle_check_severity severity, int sample,
     const char *format, ...)
@@ -118,6 +119,22 @@ say(struct wb_cycle_remarks *remarks, enum wb_cycle_check_severity severity, int
     va_start(arguments, format);
     vsnprintf(remark->text, sizeof remark->text, format, arguments);
     va_end(arguments);
+}
+
+/* Adds a remark on one specimen, whose text begins with its wire and sample. Returns whether the
+ * data are unusable. */
+static bool __attribute__((format(printf, 4, 5)))
+say_of(struct wb_cycle_remarks *remarks, enum wb_cycle_check_severity severity,
+       const struct wb_test_info *info, const char *format, ...)
+{
+    char text[sizeof remarks->items[0].text];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    say(remarks, severity, info->sample, "wire '%s', sample %d: %s", info->wire, info->sample,
+        text);
+    return severity == WB_CHECK_UNUSABLE;
 }
 
 const struct wb_cycle_remark *wb_cycle_check_find(const struct wb_cycle_remarks *remarks,
@@ -228,39 +245,33 @@ static double weights(const struct wb_test_info *info)
     return info->gravity * (info->counterweight + 0.375 * info->mass_per_length * info->length);
 }
 
-/* Each of these functions makes at most one remark and returns whether it did. */
+/* Each of these functions makes at most one remark, and returns whether the data are unusable. */
 
 static bool check_deflections(struct wb_cycle_remarks *remarks, const struct loading *loading)
 {
     const struct wb_test_info *const info = &loading->dataset->info;
     const double share = loading->top / info->length;
 
-    if (share > most_deflection) {
-        say(remarks, WB_CHECK_UNUSABLE, info->sample,
-            "wire '%s', sample %d: the deflection reaches %.4g mm, the wire is %g mm long: %s? "
-            "Expected deflection_mm in millimetres, and the length as tested",
-            info->wire, info->sample, loading->top / WB_MM, info->length / WB_MM,
-            share < 1e3 * most_deflection && share > 1e3 * metres_travel
-                ? "are the deflections in micrometres"
-                : "is one of them wrong");
-        return true;
-    }
-    if (share < metres_travel && 1e3 * share > least_travel && 1e3 * share < most_deflection) {
-        say(remarks, WB_CHECK_UNUSABLE, info->sample,
-            "wire '%s', sample %d: the deflection ends at %.4g mm on a wire of %g mm: are the "
-            "deflections in metres? Expected deflection_mm in millimetres",
-            info->wire, info->sample, loading->top / WB_MM, info->length / WB_MM);
-        return true;
-    }
-    if (share < least_travel) {
-        say(remarks, WB_CHECK_UNUSABLE, info->sample,
-            "wire '%s', sample %d: the first loading ends at %.2f mm of deflection, %.2f of the "
-            "length: nothing can be determined from so little; at least %.1f mm give EI, %.0f mm "
-            "the law: test with a longer travel",
-            info->wire, info->sample, loading->top / WB_MM, share,
-            least_travel * info->length / WB_MM, full_travel * info->length / WB_MM);
-        return true;
-    }
+    if (share > most_deflection)
+        return say_of(remarks, WB_CHECK_UNUSABLE, info,
+                      "the deflection reaches %.4g mm, the wire is %g mm long: %s? Expected "
+                      "deflection_mm in millimetres, and the length as tested",
+                      loading->top / WB_MM, info->length / WB_MM,
+                      share < 1e3 * most_deflection && share > 1e3 * metres_travel
+                          ? "are the deflections in micrometres"
+                          : "is one of them wrong");
+    if (share < metres_travel && 1e3 * share > least_travel && 1e3 * share < most_deflection)
+        return say_of(remarks, WB_CHECK_UNUSABLE, info,
+                      "the deflection ends at %.4g mm on a wire of %g mm: are the deflections in "
+                      "metres? Expected deflection_mm in millimetres",
+                      loading->top / WB_MM, info->length / WB_MM);
+    if (share < least_travel)
+        return say_of(remarks, WB_CHECK_UNUSABLE, info,
+                      "the first loading ends at %.2f mm of deflection, %.2f of the length: "
+                      "nothing can be determined from so little; at least %.1f mm give EI, %.0f mm "
+                      "the law: test with a longer travel",
+                      loading->top / WB_MM, share, least_travel * info->length / WB_MM,
+                      full_travel * info->length / WB_MM);
     return false;
 }
 
@@ -272,33 +283,27 @@ static bool check_forces(struct wb_cycle_remarks *remarks, const struct loading 
     const double modulus = loading->stiffness * pow(info->length, 3) / (3.0 * second_moment);
     const double ratio = carried > 0.0 ? loading->zero / carried : (double)NAN;
 
-    if (ratio > most_weights) {
-        say(remarks, WB_CHECK_UNUSABLE, info->sample,
-            "wire '%s', sample %d: the tension at zero deflection is %.4g N, counterweight and "
-            "wire weigh %.4g N, %.0f times less: are the forces in %s? Expected tension_N and "
-            "force_N in newtons, and the counterweight in the rig file in grams",
-            info->wire, info->sample, loading->zero, carried, ratio,
-            ratio > millinewtons ? "millinewtons" : "grams");
-        return true;
-    }
-    if (carried > 0.0 && loading->largest < least_weights * carried) {
-        say(remarks, WB_CHECK_UNUSABLE, info->sample,
-            "wire '%s', sample %d: the tension stays below %.4g N, counterweight and wire alone "
-            "weigh %.4g N: are the forces in kilonewtons, or were the weights tared away? Expected "
-            "tension_N as the strand carries it, in newtons",
-            info->wire, info->sample, loading->largest, carried);
-        return true;
-    }
-    if (modulus > most_modulus || (modulus > 0.0 && modulus < least_modulus)) {
-        say(remarks, WB_CHECK_UNUSABLE, info->sample,
-            "wire '%s', sample %d: the force rises by %.4g N/m, as on a solid rod of %.3g GPa; "
-            "expected %g to %g GPa: are the forces in %s? Expected newtons and millimetres; look "
-            "at diameter (%g mm) and length (%g mm) too",
-            info->wire, info->sample, loading->stiffness, modulus / 1e9, least_modulus / 1e9,
-            most_modulus / 1e9, modulus > most_modulus ? "millinewtons or grams" : "kilonewtons",
-            info->outer_diameter / WB_MM, info->length / WB_MM);
-        return true;
-    }
+    if (ratio > most_weights)
+        return say_of(remarks, WB_CHECK_UNUSABLE, info,
+                      "the tension at zero deflection is %.4g N, counterweight and wire weigh %.4g "
+                      "N, %.0f times less: are the forces in %s? Expected tension_N and force_N in "
+                      "newtons, and the counterweight in the rig file in grams",
+                      loading->zero, carried, ratio,
+                      ratio > millinewtons ? "millinewtons" : "grams");
+    if (carried > 0.0 && loading->largest < least_weights * carried)
+        return say_of(remarks, WB_CHECK_UNUSABLE, info,
+                      "the tension stays below %.4g N, counterweight and wire alone weigh %.4g N: "
+                      "are the forces in kilonewtons, or were the weights tared away? Expected "
+                      "tension_N as the strand carries it, in newtons",
+                      loading->largest, carried);
+    if (modulus > most_modulus || (modulus > 0.0 && modulus < least_modulus))
+        return say_of(remarks, WB_CHECK_UNUSABLE, info,
+                      "the force rises by %.4g N/m, as on a solid rod of %.3g GPa; expected %g to "
+                      "%g GPa: are the forces in %s? Expected newtons and millimetres; look at "
+                      "diameter (%g mm) and length (%g mm) too",
+                      loading->stiffness, modulus / 1e9, least_modulus / 1e9, most_modulus / 1e9,
+                      modulus > most_modulus ? "millinewtons or grams" : "kilonewtons",
+                      info->outer_diameter / WB_MM, info->length / WB_MM);
     return false;
 }
 
@@ -309,14 +314,11 @@ static bool check_length(struct wb_cycle_remarks *remarks, const struct loading 
     const double off = fabs(seen - 1.0);
     if (!(off > doubtful_length))
         return false;
-    say(remarks, off > unusable_length ? WB_CHECK_UNUSABLE : WB_CHECK_DOUBT, info->sample,
-        "wire '%s', sample %d: at zero deflection the markers stand at %.3f times their distance "
-        "along the wire, "
-        "expected 1 within %g: is the specimen %.1f mm long, not %g? EI goes with the cube of the "
-        "length; measure it from the clamp to the strand",
-        info->wire, info->sample, seen, doubtful_length, seen * info->length / WB_MM,
-        info->length / WB_MM);
-    return off > unusable_length;
+    return say_of(remarks, off > unusable_length ? WB_CHECK_UNUSABLE : WB_CHECK_DOUBT, info,
+                  "at zero deflection the markers stand at %.3f times their distance along the "
+                  "wire, expected 1 within %g: is the specimen %.1f mm long, not %g? EI goes with "
+                  "the cube of the length; measure it from the clamp to the strand",
+                  seen, doubtful_length, seen * info->length / WB_MM, info->length / WB_MM);
 }
 
 /* Checks that the points can be taken. */
@@ -338,11 +340,11 @@ void wb_cycle_check_data(struct wb_cycle_remarks *remarks, const struct wb_datas
             wb_memory_new(datasets[i]->n_rows + datasets[i]->n_shape_rows, sizeof *loading.memory);
         look_at_loading(&loading);
         /* The basic checks first: a wrong unit makes the later ones fail, too. */
-        const bool told =
+        const bool is_unusable =
             loading.n > 0 && (check_deflections(remarks, &loading) ||
                               check_forces(remarks, &loading) || check_length(remarks, &loading));
         free(loading.memory);
-        if (!told)
+        if (!is_unusable)
             check_points(remarks, datasets[i]);
     }
 }
@@ -350,6 +352,7 @@ void wb_cycle_check_data(struct wb_cycle_remarks *remarks, const struct wb_datas
 /* --- fits --- */
 
 struct specimen {
+    const struct wb_test_info *info;
     const struct wb_cycle_member *member;
     const struct wb_cycle_data *data;
     const struct wb_dataset *dataset;
@@ -358,15 +361,13 @@ struct specimen {
      * gain, counterweight and others. */
     double level_of_shared, bow_of_shared;
     double relaxation_prior;
-    const char *wire;
-    int sample;
 };
 
 /* Finds them from the results of the fit with altered data. */
 static void find_shared(struct specimen *s)
 {
     const struct wb_cycle_fit *const fit = s->fit;
-    const double length = s->data->info.length;
+    const double length = s->info->length;
     s->level_of_shared = s->bow_of_shared = 0.0;
     for (int i = 0; i < WB_SHARED; i++) {
         if (!fit->has_altered[i])
@@ -384,16 +385,10 @@ static void find_shared(struct specimen *s)
 static bool aligned_bow(const struct wb_dataset *dataset, double *bow, double *deviation)
 {
     const struct wb_test_info *const info = &dataset->info;
-    const struct wb_json *const checks =
-        dataset->document ? wb_json_get(dataset->document, "checks") : NULL;
-    const struct wb_json *const shape = checks ? wb_json_get(checks, "natural_shape") : NULL;
-    double told;
     *bow = 0.0;
     for (int i = 0; i < info->n_natural_shape; i++)
         *bow += info->natural_shape[i] * info->length / (i + 2);
-    *deviation = shape && wb_json_get_number(shape, "bow_uncertainty_mm", &told) && told > 0.0
-                     ? told * WB_MM
-                     : bow_deviation;
+    *deviation = wb_cycle_bow_deviation(dataset);
     return info->n_natural_shape > 0;
 }
 
@@ -421,26 +416,26 @@ static enum wb_status computed_zero(const struct specimen *specimen, double *ten
 
 static void check_natural_shape(struct wb_cycle_remarks *remarks, const struct specimen *s)
 {
-    const struct wb_cycle_bow bow = wb_cycle_fit_bow(s->fit, s->dataset->info.length);
-    if (s->dataset->info.n_natural_shape > 0)
+    const struct wb_cycle_bow bow = wb_cycle_fit_bow(s->fit, s->info->length);
+    if (s->info->n_natural_shape > 0)
         return;
-    say(remarks, WB_CHECK_NOTE, s->sample,
-        "wire '%s', sample %d: the dataset has no natural shape; the fit found a bow of %.2f mm "
-        "(standard error %.2f mm) by itself, but nothing confirms it: align the recording again",
-        s->wire, s->sample, bow.tip / WB_MM, bow.deviation / WB_MM);
+    say_of(remarks, WB_CHECK_NOTE, s->info,
+           "the dataset has no natural shape; the fit found a bow of %.2f mm (standard error %.2f "
+           "mm) by itself, but nothing confirms it: align the recording again",
+           bow.tip / WB_MM, bow.deviation / WB_MM);
 }
 
 static void check_travel(struct wb_cycle_remarks *remarks, const struct specimen *s)
 {
-    const double length = s->dataset->info.length, share = s->data->top / length;
+    const double length = s->info->length, share = s->data->top / length;
     if (share >= full_travel)
         return;
-    say(remarks, share < short_travel ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->sample,
-        "wire '%s', sample %d: the travel ends at %.1f mm, %.2f of the length: EI may be used "
-        "(to some 15 %%), K and n are not identifiable, and beyond a curvature of %.1f /m the law "
-        "is not known; expected %.2f of the length: a travel of %.0f mm is enough",
-        s->wire, s->sample, s->data->top / WB_MM, share, s->fit->clamp_curvature, full_travel,
-        ceil(full_travel * length / WB_MM));
+    say_of(remarks, share < short_travel ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->info,
+           "the travel ends at %.1f mm, %.2f of the length: EI may be used (to some 15 %%), K and "
+           "n are not identifiable, and beyond a curvature of %.1f /m the law is not known; "
+           "expected %.2f of the length: a travel of %.0f mm is enough",
+           s->data->top / WB_MM, share, s->fit->clamp_curvature, full_travel,
+           ceil(full_travel * length / WB_MM));
 }
 
 static void check_outliers(struct wb_cycle_remarks *remarks, const struct specimen *s)
@@ -451,12 +446,11 @@ static void check_outliers(struct wb_cycle_remarks *remarks, const struct specim
     if (s->data->n_outliers == 0 && s->fit->n_outliers == 0)
         return;
     const bool many = s->data->n_outliers > outlier_share * (double)rows;
-    say(remarks, many ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->sample,
-        "wire '%s', sample %d: %d of %ld rows were left out as outliers, %d of %d points weighted "
-        "down%s",
-        s->wire, s->sample, s->data->n_outliers, rows, s->fit->n_outliers, s->data->n_points,
-        many ? ": expected at most 2 % of the rows; look for knocks, a loose plug, lost markers"
-             : "");
+    say_of(remarks, many ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->info,
+           "%d of %ld rows were left out as outliers, %d of %d points weighted down%s",
+           s->data->n_outliers, rows, s->fit->n_outliers, s->data->n_points,
+           many ? ": expected at most 2 % of the rows; look for knocks, a loose plug, lost markers"
+                : "");
 }
 
 static void check_misfit(struct wb_cycle_remarks *remarks, const struct specimen *s)
@@ -467,13 +461,12 @@ static void check_misfit(struct wb_cycle_remarks *remarks, const struct specimen
     const double noise = sqrt(sum / s->data->n_points);
     if (s->fit->misfit <= fmax(misfit_share, misfit_noise * noise))
         return;
-    say(remarks, WB_CHECK_DOUBT, s->sample,
-        "wire '%s', sample %d: the best law misses the force by %.2f %% of the largest (loading "
-        "%.2f, unloading %.2f), expected at most %.2f %%: slip in the clamp, creep, a wrong length "
-        "or zero, or a wire that no law here describes; look at the residuals and test another "
-        "specimen",
-        s->wire, s->sample, 100.0 * s->fit->misfit, 100.0 * s->fit->loading_misfit,
-        100.0 * s->fit->unloading_misfit, 100.0 * fmax(misfit_share, misfit_noise * noise));
+    say_of(remarks, WB_CHECK_DOUBT, s->info,
+           "the best law misses the force by %.2f %% of the largest (loading %.2f, unloading "
+           "%.2f), expected at most %.2f %%: slip in the clamp, creep, a wrong length or zero, or "
+           "a wire that no law here describes; look at the residuals and test another specimen",
+           100.0 * s->fit->misfit, 100.0 * s->fit->loading_misfit, 100.0 * s->fit->unloading_misfit,
+           100.0 * fmax(misfit_share, misfit_noise * noise));
 }
 
 /* Fits a law with one free zero without a prior: of force, or of deflection and all places.
@@ -483,7 +476,7 @@ static enum wb_status fit_law_freely(const struct specimen *s, const struct wb_c
 {
     const struct wb_law *const law = &fit->law;
     struct wb_cycle_grid grid = {.last_strain =
-                                     0.5 * s->data->info.outer_diameter * fit->clamp_curvature};
+                                     0.5 * s->info->outer_diameter * fit->clamp_curvature};
     struct wb_cycle_fit_settings settings;
     struct wb_reason why;
     wb_cycle_fit_default_settings(&settings);
@@ -567,10 +560,10 @@ static bool check_other_length(struct wb_cycle_remarks *remarks, const struct sp
 {
     const double better = find_length(s, level);
     if (better > 0.0)
-        say(remarks, WB_CHECK_DOUBT, s->sample,
-            "wire '%s', sample %d: a length of about %.0f mm fits clearly better than the %g mm "
-            "it is labelled with: measure it; EI goes with the cube of the length",
-            s->wire, s->sample, better / WB_MM, s->data->info.length / WB_MM);
+        say_of(remarks, WB_CHECK_DOUBT, s->info,
+               "a length of about %.0f mm fits clearly better than the %g mm it is labelled with: "
+               "measure it; EI goes with the cube of the length",
+               better / WB_MM, s->info->length / WB_MM);
     return better > 0.0;
 }
 
@@ -615,11 +608,11 @@ static enum wb_status check_zeros_of(struct wb_cycle_remarks *remarks, const str
         fabs(level) > (bow_off ? level_limit_with_bow : level_limit) * level_deviation;
     if (!level_off && !zero_off && !(has_bow && apart > bow_doubt)) {
         if (bow_off)
-            say(remarks, WB_CHECK_NOTE, s->sample,
-                "wire '%s', sample %d: the bow of the alignment is %.2f mm, that of the fit %.2f "
-                "mm, %.1f standard deviations apart, expected at most %g; force and level at zero "
-                "agree with the fit's",
-                s->wire, s->sample, bow_before / WB_MM, bow.tip / WB_MM, apart, bow_limit);
+            say_of(remarks, WB_CHECK_NOTE, s->info,
+                   "the bow of the alignment is %.2f mm, that of the fit %.2f mm, %.1f standard "
+                   "deviations apart, expected at most %g; force and level at zero agree with the "
+                   "fit's",
+                   bow_before / WB_MM, bow.tip / WB_MM, apart, bow_limit);
         return WB_OK;
     }
     if (!length_is_seen && check_other_length(remarks, s, level))
@@ -630,11 +623,10 @@ static enum wb_status check_zeros_of(struct wb_cycle_remarks *remarks, const str
                  "; bow %.2f mm, %.2f mm by the alignment (%.1f standard "
                  "deviations apart, expected at most %g)",
                  bow.tip / WB_MM, bow_before / WB_MM, apart, bow_limit);
-    say(remarks, WB_CHECK_DOUBT, s->sample,
-        "wire '%s', sample %d: %s is wrong: at zero deflection the tension is %.2f mN, the law's "
-        "%.2f mN (expected within %.2f mN), and zero deflection lies %.2f mm off (expected within "
-        "%.2f mm)%s; %s%s",
-        s->wire, s->sample,
+    say_of(
+        remarks, WB_CHECK_DOUBT, s->info,
+        "%s is wrong: at zero deflection the tension is %.2f mN, the law's %.2f mN (expected "
+        "within %.2f mN), and zero deflection lies %.2f mm off (expected within %.2f mm)%s; %s%s",
         bow_off ? "the zero of force or the counterweight" : "the zero of deflection, or of force,",
         data->zero_tension / WB_MN, zero / WB_MN, limit / WB_MN, level / WB_MM,
         level_limit * level_deviation / WB_MM, bows,
@@ -702,7 +694,7 @@ static void check_zeros_of_all(struct wb_cycle_remarks *remarks, const struct sp
     for (int i = 0; i < n; i++) {
         const struct specimen *const s = &specimens[i];
         const struct wb_cycle_fit *const fit = s->fit;
-        const struct wb_cycle_bow fitted = wb_cycle_fit_bow(fit, s->data->info.length);
+        const struct wb_cycle_bow fitted = wb_cycle_fit_bow(fit, s->info->length);
         double aligned, deviation, own_level, own, shared;
         if (usual_miss(s) > least_missed)
             continue;
@@ -717,14 +709,14 @@ static void check_zeros_of_all(struct wb_cycle_remarks *remarks, const struct sp
             "wire '%s': the zero of force or the counterweight is wrong: the bows of %d specimens "
             "differ from those of the alignment by %.2f mm on average (expected within %.2f mm); "
             "weigh the counterweight, tare the cell with nothing on it and record again",
-            specimens[0].wire, bow.n, mean_of(&bow) / WB_MM,
+            specimens[0].info->wire, bow.n, mean_of(&bow) / WB_MM,
             common_limit * deviation_of(&bow) / WB_MM);
     else if (level.n > 1 && fabs(mean_of(&level)) > common_limit * deviation_of(&level))
         say(remarks, WB_CHECK_DOUBT, 0,
             "wire '%s': the zero of deflection, or of force, is wrong: in %d specimens zero "
             "deflection lies %.2f mm off on average (expected within %.2f mm); look at the markers "
             "of clamp and tip and their offset from the axis, then at tare and counterweight",
-            specimens[0].wire, level.n, mean_of(&level) / WB_MM,
+            specimens[0].info->wire, level.n, mean_of(&level) / WB_MM,
             common_limit * deviation_of(&level) / WB_MM);
 }
 
@@ -761,11 +753,11 @@ static enum wb_status check_zeros(struct wb_cycle_remarks *remarks, const struct
         check_misfit(remarks, s);
     } else if (status == WB_OK &&
                (length_is_seen || !has_level || !check_other_length(remarks, s, level.level))) {
-        say(remarks, WB_CHECK_DOUBT, s->sample,
-            "wire '%s', sample %d: the zero of force or the counterweight is wrong: the law misses "
-            "the force by %.2f %% of the largest, by %.2f %% if %.2f mN are taken off; weigh the "
-            "counterweight, tare the cell with nothing on it and record again",
-            s->wire, s->sample, 100.0 * s->fit->misfit, 100.0 * force.misfit, force.zero / WB_MN);
+        say_of(remarks, WB_CHECK_DOUBT, s->info,
+               "the zero of force or the counterweight is wrong: the law misses the force by %.2f "
+               "%% of the largest, by %.2f %% if %.2f mN are taken off; weigh the counterweight, "
+               "tare the cell with nothing on it and record again",
+               100.0 * s->fit->misfit, 100.0 * force.misfit, force.zero / WB_MN);
     }
     wb_cycle_fit_release(&level);
     wb_cycle_fit_release(&force);
@@ -799,8 +791,7 @@ static void check_others(struct wb_cycle_remarks *remarks,
         if (!isfinite(calibration->rigidity.deviation))
             say(remarks, WB_CHECK_NOTE, 0,
                 "wire '%s': one sample cannot show how specimens differ: the intervals are those "
-                "of "
-                "this specimen, not of the product; test at least three",
+                "of this specimen, not of the product; test at least three",
                 wire);
         return;
     }
@@ -838,12 +829,10 @@ static void check_others(struct wb_cycle_remarks *remarks,
         }
     }
     if (farthest >= 0)
-        say(remarks, WB_CHECK_DOUBT, calibration->members[farthest].sample,
-            "wire '%s', sample %d: EI is %.0f %% %s than the others', expected within %.0f %%: is "
-            "it of this wire, its length right, and clamped as the others? Leave it out or test it "
-            "again",
-            wire, calibration->members[farthest].sample, 100.0 * fabs(expm1(off)),
-            off > 0.0 ? "higher" : "lower", 100.0 * expm1(allowed));
+        say_of(remarks, WB_CHECK_DOUBT, &calibration->members[farthest].data.info,
+               "EI is %.0f %% %s than the others', expected within %.0f %%: is it of this wire, "
+               "its length right, and clamped as the others? Leave it out or test it again",
+               100.0 * fabs(expm1(off)), off > 0.0 ? "higher" : "lower", 100.0 * expm1(allowed));
 }
 
 /* Uses the moment at the largest curvature, which is known best. */
@@ -877,11 +866,10 @@ static void check_holds(struct wb_cycle_remarks *remarks, const struct specimen 
     double seconds;
     const int n = wb_holds_of_bent_wire(s->dataset, &seconds);
     if (n > 0)
-        say(remarks, WB_CHECK_DOUBT, s->sample,
-            "wire '%s', sample %d: the test was held %d time%s, for %.0f s in all, while the wire "
-            "was bent: it relaxed, and no law here includes it. Leave it out or test it again "
-            "without a hold",
-            s->wire, s->sample, n, n == 1 ? "" : "s", seconds);
+        say_of(remarks, WB_CHECK_DOUBT, s->info,
+               "the test was held %d time%s, for %.0f s in all, while the wire was bent: it "
+               "relaxed, and no law here includes it. Leave it out or test it again without a hold",
+               n, n == 1 ? "" : "s", seconds);
 }
 
 /* Mean tension of some rows, and the square of its standard error; NaN for fewer than two rows with
@@ -927,18 +915,18 @@ static void check_relaxation(struct wb_cycle_remarks *remarks, const struct spec
     const double seconds = rows[worst->end - 1].t - rows[worst->first].t;
     const double at = rows[worst->first].deflection / WB_MM;
     if (s->fit->law.n_maxwell > 0)
-        say(remarks, WB_CHECK_NOTE, s->sample,
-            "wire '%s', sample %d: the force falls by %.1f %% of the largest in %.1f s while "
-            "nothing moves, at a deflection of %.1f mm: the wire relaxes, and Maxwell elements "
-            "beside the law follow it; moments are those at the test's speed",
-            s->wire, s->sample, 100.0 * share, seconds, at);
+        say_of(remarks, WB_CHECK_NOTE, s->info,
+               "the force falls by %.1f %% of the largest in %.1f s while nothing moves, at a "
+               "deflection of %.1f mm: the wire relaxes, and Maxwell elements beside the law "
+               "follow it; moments are those at the test's speed",
+               100.0 * share, seconds, at);
     else
-        say(remarks, share >= doubted_fall ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->sample,
-            "wire '%s', sample %d: the force falls by %.1f %% of the largest in %.1f s while "
-            "nothing moves, at a deflection of %.1f mm: the wire relaxes, and the law does not. "
-            "The stiffness during unloading and EI come out too high, moments too low; record with "
-            "a dwell at the turn (--dwell-s), from which relaxation is fitted",
-            s->wire, s->sample, 100.0 * share, seconds, at);
+        say_of(remarks, share >= doubted_fall ? WB_CHECK_DOUBT : WB_CHECK_NOTE, s->info,
+               "the force falls by %.1f %% of the largest in %.1f s while nothing moves, at a "
+               "deflection of %.1f mm: the wire relaxes, and the law does not. The stiffness "
+               "during unloading and EI come out too high, moments too low; record with a dwell at "
+               "the turn (--dwell-s), from which relaxation is fitted",
+               100.0 * share, seconds, at);
 }
 
 enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
@@ -959,13 +947,12 @@ enum wb_status wb_cycle_check_run(struct wb_cycle_remarks *remarks,
         const struct wb_cycle_member *const member = &calibration->members[i];
         struct specimen *const specimen = &specimens[i];
         *specimen = (struct specimen){
+            .info = &member->data.info,
             .member = member,
             .data = &member->data,
             .dataset = datasets[i],
             .fit = &member->answers[calibration->chosen].fit,
             .relaxation_prior = calibration->relaxation_prior,
-            .wire = wire,
-            .sample = member->sample,
         };
         find_shared(specimen);
         check_travel(remarks, specimen);

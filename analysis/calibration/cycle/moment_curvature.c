@@ -29,6 +29,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
+#include "analysis/calibration/cycle/cycle_bow.h"
 #include "analysis/calibration/cycle/cycle_data.h"
 #include "analysis/calibration/law/bending.h"
 #include "base/memory.h"
@@ -54,7 +55,8 @@ enum {
  * small, and the polynomial is determined by the tip. */
 static const double stations[STATIONS] = {0.0, 0.2, 0.4};
 
-static const double default_step = 3.0 * WB_MM, default_share = 0.12, default_bow = 0.3 * WB_MM;
+/* Deflection between shapes; part of the largest curvature below which points are bands. */
+static const double shape_step = 3.0 * WB_MM, smallest_share = 0.12;
 /* Standard deviation of a marker's constant distance from the axis, and prior standard deviation of
  * its mean places in a state. */
 static const double offset_deviation = 0.15 * WB_MM, place_deviation = 0.03 * WB_MM;
@@ -336,10 +338,8 @@ static void add_points(struct wb_moment_cloud *cloud, const struct fitting *f,
 }
 
 /* Scales the deviations and marks points of the band. */
-static void finish(struct wb_moment_cloud *cloud, const struct fitting *f,
-                   const struct wb_moment_settings *settings, double bow_deviation)
+static void finish(struct wb_moment_cloud *cloud, const struct fitting *f, double bow_deviation)
 {
-    const double share = settings->smallest_share > 0.0 ? settings->smallest_share : default_share;
     /* Errors of a marker's distance are the same in all states, so few independent numbers
      * determine their size; the prior counts as additional ones. */
     const double free_places = (double)f->all_degrees / f->n_states;
@@ -357,19 +357,8 @@ static void finish(struct wb_moment_cloud *cloud, const struct fitting *f,
         struct wb_moment_point *const point = &cloud->points[i];
         point->deviation = sqrt(pow(point->deviation * places, 2) + natural * natural +
                                 pow(form_share * point->curvature, 2));
-        point->is_band = point->curvature < share * cloud->largest;
+        point->is_band = point->curvature < smallest_share * cloud->largest;
     }
-}
-
-/* Stated by `align`. */
-static double stated_bow_deviation(const struct wb_dataset *dataset)
-{
-    const struct wb_json *const checks = wb_json_get(dataset->document, "checks");
-    double value;
-    if (wb_json_get_number(wb_json_get(checks, "natural_shape"), "bow_uncertainty_mm", &value) &&
-        value > 0.0)
-        return value * WB_MM;
-    return default_bow;
 }
 
 /* Fits the mean curve of the points of the loading by least squares; false if there are too few. */
@@ -435,8 +424,7 @@ static void fit_states(struct wb_moment_cloud *cloud, struct fitting *f)
     }
 }
 
-static enum wb_status take(struct wb_moment_cloud *cloud, struct fitting *f,
-                           const struct wb_moment_settings *settings, double bow_deviation,
+static enum wb_status take(struct wb_moment_cloud *cloud, struct fitting *f, double bow_deviation,
                            struct wb_reason *why)
 {
     const struct wb_cycle_data *const data = f->data;
@@ -451,20 +439,16 @@ static enum wb_status take(struct wb_moment_cloud *cloud, struct fitting *f,
                           "wire '%s', sample %d: no shapes of at least %d markers between clamp "
                           "and tip: expected some for moments over curvatures",
                           data->info.wire, data->info.sample, FEWEST_MARKERS);
-    finish(cloud, f, settings, bow_deviation);
+    finish(cloud, f, bow_deviation);
     return WB_OK;
 }
 
 enum wb_status wb_moment_curvature_take(struct wb_moment_cloud *cloud,
                                         const struct wb_dataset *dataset,
                                         const struct wb_cycle_specimen *specimen,
-                                        const struct wb_moment_settings *settings,
                                         struct wb_reason *why)
 {
-    const struct wb_moment_settings defaults = {0};
-    const struct wb_moment_settings *const s = settings ? settings : &defaults;
-    const struct wb_cycle_data_settings how = {.marker_step =
-                                                   s->step > 0.0 ? s->step : default_step};
+    const struct wb_cycle_data_settings how = {.marker_step = shape_step};
     struct wb_cycle_data data;
     *cloud = (struct wb_moment_cloud){0};
     WB_TRY(wb_cycle_data_take(&data, dataset, &how, why));
@@ -476,9 +460,7 @@ enum wb_status wb_moment_curvature_take(struct wb_moment_cloud *cloud,
         wb_cycle_model_bend(specimen, &info);
         f->level = specimen->level;
     }
-    const enum wb_status status =
-        take(cloud, f, s, s->bow_deviation > 0.0 ? s->bow_deviation : stated_bow_deviation(dataset),
-             why);
+    const enum wb_status status = take(cloud, f, wb_cycle_bow_deviation(dataset), why);
     free(f);
     wb_cycle_data_release(&data);
     if (status != WB_OK)

@@ -37,19 +37,12 @@ struct wb_moment_cloud {
     double place_rms; /* m: RMS distance of the markers from the fitted shapes */
 };
 
-struct wb_moment_settings {
-    double step;           /* m of deflection between shapes; 0: 3 mm */
-    double smallest_share; /* part of the largest curvature below which points are bands; 0: 0.12 */
-    double bow_deviation;  /* m, of the natural tip offset; 0: the dataset's, else 0.3 mm */
-};
-
 /* Takes the points of the first cycle. `specimen`: bow and level of a fit; NULL: the natural shape
- * of the dataset. `settings` NULL: defaults. WB_ERR_DATA without shapes of at least three inner
- * markers, or for a test whose tip is not raised; `why` receives the reason; NULL: it is logged. */
+ * of the dataset. WB_ERR_DATA without shapes of at least three inner markers, or for a test whose
+ * tip is not raised; `why` receives the reason; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_moment_curvature_take(struct wb_moment_cloud *cloud,
                                                       const struct wb_dataset *dataset,
                                                       const struct wb_cycle_specimen *specimen,
-                                                      const struct wb_moment_settings *settings,
                                                       struct wb_reason *why);
 void wb_moment_curvature_release(struct wb_moment_cloud *cloud); /* accepts a zeroed one */
 

@@ -104,7 +104,7 @@ static enum wb_status take_clouds(struct wb_recordings_cycle *cycle,
         const struct wb_cycle_specimen specimen = {fit->bow_angle, fit->level, fit->uneven_angle};
         struct wb_reason why = {.text = ""};
         const enum wb_status one =
-            wb_moment_curvature_take(&cycle->clouds[i], datasets[i], &specimen, NULL, &why);
+            wb_moment_curvature_take(&cycle->clouds[i], datasets[i], &specimen, &why);
         if (one == WB_OK)
             taken[n_taken++] = &cycle->clouds[i];
         else

@@ -130,7 +130,7 @@ static double worst_error(const struct wb_moment_cloud *cloud, const struct wb_l
 static double error_of(const struct wb_dataset *dataset, const struct wb_law *law)
 {
     struct wb_moment_cloud cloud;
-    assert_int_equal(wb_moment_curvature_take(&cloud, dataset, NULL, NULL, NULL), WB_OK);
+    assert_int_equal(wb_moment_curvature_take(&cloud, dataset, NULL, NULL), WB_OK);
     const double worst = worst_error(&cloud, law, dataset->info.outer_diameter);
     wb_moment_curvature_release(&cloud);
     return worst;
@@ -179,7 +179,7 @@ static void weight_counterweight_strand_and_bow_count(void **state)
     /* What a fit found wins over the dataset. */
     struct wb_moment_cloud cloud;
     const struct wb_cycle_specimen specimen = {.bow_angle = info.natural_shape[0]};
-    assert_int_equal(wb_moment_curvature_take(&cloud, &dataset, &specimen, NULL, NULL), WB_OK);
+    assert_int_equal(wb_moment_curvature_take(&cloud, &dataset, &specimen, NULL), WB_OK);
     assert_true(worst_error(&cloud, &law, info.outer_diameter) < 0.005);
     wb_moment_curvature_release(&cloud);
     wb_dataset_release(&dataset);
@@ -217,7 +217,7 @@ static void unloading_is_that_of_the_hardening_rule(void **state)
     struct wb_fibres_response response;
     int n = 0;
     exact_dataset(&dataset, &law, 0.0);
-    assert_int_equal(wb_moment_curvature_take(&cloud, &dataset, NULL, NULL, NULL), WB_OK);
+    assert_int_equal(wb_moment_curvature_take(&cloud, &dataset, NULL, NULL), WB_OK);
     assert_int_equal(wb_section_init_law(&section, dataset.info.outer_diameter, &law, 60), WB_OK);
     assert_int_equal(wb_fibres_create(&fibres, &section), WB_OK);
     const size_t size = wb_fibres_history_size(fibres);
@@ -304,7 +304,7 @@ static void rig_shows_its_wires(void **state)
             fast_rig_init(&fast, type, 85 * mm, 5000 + (uint64_t)k);
             fast.every_frame = 1;
             assert_int_equal(fast_rig_run(&fast, &dataset), WB_OK);
-            assert_int_equal(wb_moment_curvature_take(&cloud, &dataset, NULL, NULL, NULL), WB_OK);
+            assert_int_equal(wb_moment_curvature_take(&cloud, &dataset, NULL, NULL), WB_OK);
             collect(errors, &fast, &cloud);
             wb_moment_curvature_release(&cloud);
             wb_dataset_release(&dataset);
@@ -384,7 +384,7 @@ static void fitted_law_does_not_warn_and_a_wrong_one_does(void **state)
                                               NULL, &grid, &settings, NULL),
                              WB_OK);
             const struct wb_cycle_specimen specimen = {fit.bow_angle, fit.level};
-            assert_int_equal(wb_moment_curvature_take(&clouds[k], &dataset, &specimen, NULL, NULL),
+            assert_int_equal(wb_moment_curvature_take(&clouds[k], &dataset, &specimen, NULL),
                              WB_OK);
             law = fit.law;
             list[k] = &clouds[k];
@@ -428,11 +428,11 @@ static void shapes_are_wanted(void **state)
     struct wb_reason why = {""};
     exact_dataset(&dataset, &law, 0.0);
     dataset.n_shape_rows = 0;
-    assert_int_equal(wb_moment_curvature_take(&cloud, &dataset, NULL, NULL, &why), WB_ERR_DATA);
+    assert_int_equal(wb_moment_curvature_take(&cloud, &dataset, NULL, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, "no shapes of at least 3 markers"));
     assert_null(cloud.points);
     dataset.info.is_follower = true;
-    assert_int_equal(wb_moment_curvature_take(&cloud, &dataset, NULL, NULL, &why), WB_ERR_DATA);
+    assert_int_equal(wb_moment_curvature_take(&cloud, &dataset, NULL, &why), WB_ERR_DATA);
     wb_dataset_release(&dataset);
 }
 
