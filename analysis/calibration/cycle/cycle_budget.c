@@ -47,10 +47,13 @@ static double largest_value(enum wb_cycle_number number)
                : (double)INFINITY;
 }
 
+static bool is_pooled(const struct wb_cycle_calibration *calibration)
+{
+    return calibration->pooled_deviation > 0.0 && calibration->pooled_degrees > 0;
+}
+
 void wb_cycle_average(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
-                      enum wb_cycle_number number,
-                      const struct wb_cycle_calibrate_settings *settings,
-                      struct wb_estimate *estimate)
+                      enum wb_cycle_number number, struct wb_estimate *estimate)
 {
     const double unknown = (double)NAN;
     const int n = calibration->n_members;
@@ -62,10 +65,18 @@ void wb_cycle_average(const struct wb_cycle_calibration *calibration, enum wb_ca
     }
     const double mean = sum / n;
     *estimate = (struct wb_estimate){exp(mean), unknown, unknown, unknown, unknown, unknown};
-    if (n > 1)
+    if (is_pooled(calibration))
+        estimate->deviation = calibration->pooled_deviation;
+    else if (n > 1)
         estimate->deviation = sqrt(fmax(0.0, squares - n * mean * mean) / (n - 1));
-    if (settings->pooled_deviation > 0.0 && settings->pooled_degrees > 0)
-        estimate->deviation = settings->pooled_deviation;
+}
+
+static double mean_of(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
+                      enum wb_cycle_number number)
+{
+    struct wb_estimate mean;
+    wb_cycle_average(calibration, candidate, number, &mean);
+    return mean.value;
 }
 
 /* Root mean square over the specimens. */
@@ -82,44 +93,37 @@ static double fit_error(const struct wb_cycle_calibration *calibration, enum wb_
 
 /* Uncertainty of the mean from the scatter, at least the one that the errors of the fits imply:
  * three specimens have agreed within 0.03 % by chance. */
-static void add_scatter(const struct wb_cycle_calibration *calibration,
-                        const struct wb_cycle_calibrate_settings *settings, double deviation,
+static void add_scatter(const struct wb_cycle_calibration *calibration, double deviation,
                         struct wb_budget *budget)
 {
     const int n = calibration->n_members;
     const double error = budget->uncertainty[WB_FROM_FIT];
-    const bool is_pooled = settings->pooled_deviation > 0.0 && settings->pooled_degrees > 0;
     budget->uncertainty[WB_FROM_SPECIMENS] = fmax(deviation, error) / sqrt(n);
-    budget->degrees[WB_FROM_SPECIMENS] = deviation < error ? known_to_a_quarter
-                                         : is_pooled       ? settings->pooled_degrees
-                                                           : n - 1;
+    budget->degrees[WB_FROM_SPECIMENS] = deviation < error        ? known_to_a_quarter
+                                         : is_pooled(calibration) ? calibration->pooled_degrees
+                                                                  : n - 1;
     if (!isfinite(deviation))
         budget->uncertainty[WB_FROM_SPECIMENS] = (double)NAN;
 }
 
 /* Mean of a stiffness at the smallest curvature that the data resolve, N m2. */
 static double resolved_mean(const struct wb_cycle_calibration *calibration,
-                            const struct wb_cycle_stiffness *stiffness, enum wb_cycle_number first,
-                            const struct wb_cycle_calibrate_settings *settings)
+                            const struct wb_cycle_stiffness *stiffness, enum wb_cycle_number first)
 {
-    struct wb_estimate mean;
-    const int k = wb_cycle_stiffness_resolved(stiffness);
-    wb_cycle_average(calibration, calibration->chosen, (enum wb_cycle_number)((int)first + k),
-                     settings, &mean);
-    return mean.value;
+    return mean_of(calibration, calibration->chosen,
+                   (enum wb_cycle_number)((int)first + wb_cycle_stiffness_resolved(stiffness)));
 }
 
 /* Extrapolation by the law below the smallest curvature that the data resolve: distance of the
  * logarithm of a stiffness from its value there. 0 within the data. */
 static double beyond_data(const struct wb_cycle_calibration *calibration,
-                          enum wb_cycle_number number,
-                          const struct wb_cycle_calibrate_settings *settings, double value)
+                          enum wb_cycle_number number, double value)
 {
     const struct wb_cycle_stiffness *const s = &calibration->secant, *const u =
                                                                          &calibration->unloading;
-    const double secant = resolved_mean(calibration, s, WB_CYCLE_FIRST_SECANT, settings);
+    const double secant = resolved_mean(calibration, s, WB_CYCLE_FIRST_SECANT);
     const double unloading =
-        u->n > 0 ? resolved_mean(calibration, u, WB_CYCLE_FIRST_UNLOADING, settings) : (double)NAN;
+        u->n > 0 ? resolved_mean(calibration, u, WB_CYCLE_FIRST_UNLOADING) : (double)NAN;
     const int moment = (int)number - WB_CYCLE_FIRST_MOMENT;
     const int k = (int)number - WB_CYCLE_FIRST_SECANT, unloading_index = k - WB_CYCLE_STIFFNESSES;
     if (number == WB_CYCLE_RIGIDITY)
@@ -153,15 +157,12 @@ static double miss_at_turn(const struct wb_cycle_calibration *calibration,
  * the laws that fit nearly as well; the misfit of the chosen law just after the turn; and a part of
  * its extrapolation below the data. */
 static void add_form(const struct wb_cycle_calibration *calibration, enum wb_cycle_number number,
-                     const struct wb_cycle_calibrate_settings *settings, double value,
-                     struct wb_budget *budget)
+                     double value, struct wb_budget *budget)
 {
     double squares = 0.0, low = 0.0, high = 0.0;
     for (int i = 0; i < calibration->n_ranked; i++) {
         const struct wb_cycle_rank *const rank = &calibration->ranked[i];
-        struct wb_estimate other;
-        wb_cycle_average(calibration, rank->candidate, number, settings, &other);
-        const double off = log(other.value / value);
+        const double off = log(mean_of(calibration, rank->candidate, number) / value);
         if (!isfinite(off))
             continue;
         squares += rank->weight * off * off;
@@ -171,7 +172,7 @@ static void add_form(const struct wb_cycle_calibration *calibration, enum wb_cyc
         }
     }
     squares = fmax(squares, (high - low) * (high - low) / 12.0);
-    const double alone = unknown_part * beyond_data(calibration, number, settings, value);
+    const double alone = unknown_part * beyond_data(calibration, number, value);
     const double missed = miss_at_turn(calibration, number);
     budget->uncertainty[WB_FROM_LAW] = sqrt(squares + alone * alone + missed * missed);
     budget->degrees[WB_FROM_LAW] = known_to_a_quarter;
@@ -232,14 +233,13 @@ static void combine(struct wb_budget *budget)
 }
 
 void wb_cycle_estimate(const struct wb_cycle_calibration *calibration, enum wb_cycle_number number,
-                       const struct wb_cycle_calibrate_settings *settings,
                        struct wb_estimate *estimate, struct wb_budget *budget)
 {
-    wb_cycle_average(calibration, calibration->chosen, number, settings, estimate);
+    wb_cycle_average(calibration, calibration->chosen, number, estimate);
     budget->uncertainty[WB_FROM_FIT] = fit_error(calibration, calibration->chosen, number);
     budget->degrees[WB_FROM_FIT] = known_to_a_quarter;
-    add_scatter(calibration, settings, estimate->deviation, budget);
-    add_form(calibration, number, settings, estimate->value, budget);
+    add_scatter(calibration, estimate->deviation, budget);
+    add_form(calibration, number, estimate->value, budget);
     add_shared(calibration, number, budget);
     combine(budget);
     const double half = fmin(budget->factor * budget->combined, largest_range);
@@ -249,14 +249,13 @@ void wb_cycle_estimate(const struct wb_cycle_calibration *calibration, enum wb_c
     estimate->candidates_low = estimate->candidates_high = estimate->value;
     for (int i = 0; i < calibration->n_ranked; i++) {
         const enum wb_candidate candidate = calibration->ranked[i].candidate;
-        struct wb_estimate other;
         if (!calibration->ranked[i].counts)
             continue;
-        wb_cycle_average(calibration, candidate, number, settings, &other);
+        const double other = mean_of(calibration, candidate, number);
         const double error =
             fmin(range_errors * fit_error(calibration, candidate, number), largest_range);
-        estimate->candidates_low = fmin(estimate->candidates_low, other.value * exp(-error));
-        estimate->candidates_high = fmax(estimate->candidates_high, other.value * exp(error));
+        estimate->candidates_low = fmin(estimate->candidates_low, other * exp(-error));
+        estimate->candidates_high = fmax(estimate->candidates_high, other * exp(error));
     }
     estimate->candidates_high = fmin(estimate->candidates_high, largest_value(number));
 }

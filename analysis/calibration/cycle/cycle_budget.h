@@ -49,16 +49,13 @@ double wb_cycle_budget_cell(const struct wb_budget *budget, enum wb_contribution
 void wb_cycle_budget_put(struct wb_json *array, const struct wb_cycle_calibration *calibration);
 
 /* Mean of a candidate's result over the specimens (of the logarithms), and their standard deviation
- * or the pooled one of the settings; no interval. */
+ * or the pooled one; no interval. */
 void wb_cycle_average(const struct wb_cycle_calibration *calibration, enum wb_candidate candidate,
-                      enum wb_cycle_number number,
-                      const struct wb_cycle_calibrate_settings *settings,
-                      struct wb_estimate *estimate);
+                      enum wb_cycle_number number, struct wb_estimate *estimate);
 
 /* Result of the chosen law with its budget and interval, and the range over the candidates that
  * count, each widened by two standard errors of its fits. */
 void wb_cycle_estimate(const struct wb_cycle_calibration *calibration, enum wb_cycle_number number,
-                       const struct wb_cycle_calibrate_settings *settings,
                        struct wb_estimate *estimate, struct wb_budget *budget);
 
 #endif

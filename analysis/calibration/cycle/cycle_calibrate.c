@@ -207,17 +207,23 @@ static void contain(enum wb_candidate candidate, struct wb_law *law)
     law->backs[law->n_backs++] = law->backs[0];
 }
 
+/* The specimen that is fitted, and what all its fits share. */
+struct fitting {
+    struct wb_cycle_member *member;
+    const struct wb_cycle_grid *grid;
+    const struct wb_cycle_calibrate_settings *settings;
+};
+
 /* Replaces the fit of a candidate by that of a law that it contains, if that is better: with the
  * share at the end of its range, or with two equal backstresses. Priors, or a search that stopped
  * early, may have prevented the candidate's own fit from reaching it. A mixed law has no exponent
  * above 1. The contained fit is final: the answer refers to it. */
-static void take_contained(struct wb_cycle_member *member, enum wb_candidate candidate,
-                           const struct wb_cycle_fit *contained,
-                           const struct wb_cycle_calibrate_settings *settings)
+static void take_contained(const struct fitting *f, enum wb_candidate candidate,
+                           const struct wb_cycle_fit *contained)
 {
-    struct wb_cycle_answer *const answer = &member->answers[candidate];
-    const size_t n = (size_t)member->data.n_points;
-    if (!contained || settings->left_out >> candidate & 1U ||
+    struct wb_cycle_answer *const answer = &f->member->answers[candidate];
+    const size_t n = (size_t)f->member->data.n_points;
+    if (!contained || f->settings->left_out >> candidate & 1U ||
         (answer->is_fitted && better(&answer->fit, contained) == &answer->fit))
         return;
     if (candidate == WB_CANDIDATE_LUDWIK_MIXED && contained->law.material.hardening_exponent > 1.0)
@@ -241,23 +247,22 @@ static void take_contained(struct wb_cycle_member *member, enum wb_candidate can
 /* Fits a candidate from the initial guess `start`, and keeps the fit if it is better than the
  * present one. `near` is the fit of that law to the same data (NULL: none). A start that the beam
  * cannot compute leaves the candidate unfitted and returns WB_OK. */
-static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate candidate,
-                              const struct wb_law *start, const struct wb_cycle_fit *near,
-                              const struct wb_cycle_grid *grid,
-                              const struct wb_cycle_calibrate_settings *settings)
+static enum wb_status fit_one(const struct fitting *f, enum wb_candidate candidate,
+                              const struct wb_law *start, const struct wb_cycle_fit *near)
 {
+    struct wb_cycle_member *const member = f->member;
     struct wb_cycle_answer *const answer = &member->answers[candidate];
     struct wb_cycle_fit fit;
-    if (settings->left_out >> candidate & 1U)
+    if (f->settings->left_out >> candidate & 1U)
         return WB_OK;
     const enum wb_status status = wb_cycle_fit_run(&fit, &member->data, candidate, start, near,
-                                                   grid, &settings->fit, &member->why);
+                                                   f->grid, &f->settings->fit, &member->why);
     if (status == WB_ERR_CONVERGENCE)
         return WB_OK;
     WB_TRY(status);
     if (fit.is_contained) {
         wb_cycle_fit_release(&fit);
-        take_contained(member, candidate, near, settings);
+        take_contained(f, candidate, near);
     } else if (better(answer->is_fitted ? &answer->fit : NULL, &fit) == &fit) {
         wb_cycle_fit_release(&answer->fit);
         answer->fit = fit;
@@ -269,35 +274,32 @@ static enum wb_status fit_one(struct wb_cycle_member *member, enum wb_candidate 
     return WB_OK;
 }
 
-/* The same from the law of another specimen (NULL: none), which is a better guess than `start`. */
-static enum wb_status fit_from_specimen(struct wb_cycle_member *member,
+/* The same from the law of another specimen (NULL: none), which is a better guess than that of
+ * `near`. */
+static enum wb_status fit_from_specimen(const struct fitting *f,
                                         const struct wb_cycle_member *first,
-                                        enum wb_candidate candidate, const struct wb_law *start,
-                                        const struct wb_cycle_fit *near,
-                                        const struct wb_cycle_grid *grid,
-                                        const struct wb_cycle_calibrate_settings *settings)
+                                        enum wb_candidate candidate,
+                                        const struct wb_cycle_fit *near)
 {
     const struct wb_cycle_fit *const known = first ? fit_of(first, candidate) : NULL;
     if (known)
-        WB_TRY(fit_one(member, candidate, &known->law, near, grid, settings));
-    const struct wb_cycle_fit *const found = fit_of(member, candidate);
-    return found && found->is_converged ? WB_OK
-                                        : fit_one(member, candidate, start, near, grid, settings);
+        WB_TRY(fit_one(f, candidate, &known->law, near));
+    const struct wb_cycle_fit *const found = fit_of(f->member, candidate);
+    return found && found->is_converged ? WB_OK : fit_one(f, candidate, &near->law, near);
 }
 
 /* The same from the better of two fits (NULL: none); if the result is worse than the other fit,
  * also from that one. */
-static enum wb_status fit_from(struct wb_cycle_member *member, const struct wb_cycle_member *first,
+static enum wb_status fit_from(const struct fitting *f, const struct wb_cycle_member *first,
                                enum wb_candidate candidate, const struct wb_cycle_fit *one,
-                               const struct wb_cycle_fit *other, const struct wb_cycle_grid *grid,
-                               const struct wb_cycle_calibrate_settings *settings)
+                               const struct wb_cycle_fit *other)
 {
     const struct wb_cycle_fit *const near = better(one, other);
     const struct wb_cycle_fit *const second = near == one ? other : one;
     if (near)
-        WB_TRY(fit_from_specimen(member, first, candidate, &near->law, near, grid, settings));
-    const bool is_worse = second && better(second, fit_of(member, candidate)) == second;
-    return is_worse ? fit_one(member, candidate, &second->law, second, grid, settings) : WB_OK;
+        WB_TRY(fit_from_specimen(f, first, candidate, near));
+    const bool is_worse = second && better(second, fit_of(f->member, candidate)) == second;
+    return is_worse ? fit_one(f, candidate, &second->law, second) : WB_OK;
 }
 
 static const struct wb_cycle_fit *best_ludwik(const struct wb_cycle_member *member)
@@ -308,66 +310,60 @@ static const struct wb_cycle_fit *best_ludwik(const struct wb_cycle_member *memb
     return better(best, fit_of(member, WB_CANDIDATE_LUDWIK_COMBINED));
 }
 
+static bool has_unloading(const struct wb_cycle_member *member)
+{
+    return member->data.n_loading < member->data.n_points;
+}
+
 /* Fits Ludwik's candidates. Most wires are closer to the kinematic one, which is a better initial
  * guess of the isotropic one than the closed forms. */
-static enum wb_status fit_ludwiks(struct wb_cycle_member *member,
-                                  const struct wb_cycle_calibrate_settings *settings)
+static enum wb_status fit_ludwiks(const struct fitting *f)
 {
-    const struct wb_cycle_grid none = {0.0, 0.0};
+    struct wb_cycle_member *const member = f->member;
     struct wb_law start;
     initial_law(&member->data, &start);
-    if (member->data.n_loading == member->data.n_points)
-        return fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, NULL, &none, settings);
-    WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_KINEMATIC, &start, NULL, &none, settings));
+    if (!has_unloading(member))
+        return fit_one(f, WB_CANDIDATE_LUDWIK_ISOTROPIC, &start, NULL);
+    WB_TRY(fit_one(f, WB_CANDIDATE_LUDWIK_KINEMATIC, &start, NULL));
     const struct wb_cycle_fit *const kinematic = fit_of(member, WB_CANDIDATE_LUDWIK_KINEMATIC);
-    WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_ISOTROPIC, kinematic ? &kinematic->law : &start,
-                   kinematic, &none, settings));
+    WB_TRY(
+        fit_one(f, WB_CANDIDATE_LUDWIK_ISOTROPIC, kinematic ? &kinematic->law : &start, kinematic));
     const struct wb_cycle_fit *const isotropic = fit_of(member, WB_CANDIDATE_LUDWIK_ISOTROPIC);
     if (!isotropic && !kinematic) {
-        WB_TRY(fit_one(member, WB_CANDIDATE_LUDWIK_MIXED, &start, NULL, &none, settings));
-        return fit_one(member, WB_CANDIDATE_LUDWIK_COMBINED, &start, NULL, &none, settings);
+        WB_TRY(fit_one(f, WB_CANDIDATE_LUDWIK_MIXED, &start, NULL));
+        return fit_one(f, WB_CANDIDATE_LUDWIK_COMBINED, &start, NULL);
     }
-    WB_TRY(
-        fit_from(member, NULL, WB_CANDIDATE_LUDWIK_MIXED, isotropic, kinematic, &none, settings));
-    take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, isotropic, settings);
-    take_contained(member, WB_CANDIDATE_LUDWIK_MIXED, kinematic, settings);
-    WB_TRY(fit_from(member, NULL, WB_CANDIDATE_LUDWIK_COMBINED, isotropic, kinematic, &none,
-                    settings));
-    take_contained(member, WB_CANDIDATE_LUDWIK_COMBINED, isotropic, settings);
+    WB_TRY(fit_from(f, NULL, WB_CANDIDATE_LUDWIK_MIXED, isotropic, kinematic));
+    take_contained(f, WB_CANDIDATE_LUDWIK_MIXED, isotropic);
+    take_contained(f, WB_CANDIDATE_LUDWIK_MIXED, kinematic);
+    WB_TRY(fit_from(f, NULL, WB_CANDIDATE_LUDWIK_COMBINED, isotropic, kinematic));
+    take_contained(f, WB_CANDIDATE_LUDWIK_COMBINED, isotropic);
     return WB_OK;
 }
 
-static enum wb_status fit_parallels(struct wb_cycle_member *member,
-                                    const struct wb_cycle_member *first,
-                                    const struct wb_cycle_grid *grid,
-                                    const struct wb_cycle_calibrate_settings *settings)
+static enum wb_status fit_parallels(const struct fitting *f, const struct wb_cycle_member *first)
 {
-    const struct wb_cycle_fit *const near = best_ludwik(member);
-    if (!near || member->data.n_loading == member->data.n_points)
-        return WB_OK;
-    WB_TRY(fit_from_specimen(member, first, WB_CANDIDATE_PARALLEL_KINEMATIC, &near->law, near, grid,
-                             settings));
-    const struct wb_cycle_fit *const pure = fit_of(member, WB_CANDIDATE_PARALLEL_KINEMATIC);
-    WB_TRY(fit_from(member, NULL, WB_CANDIDATE_PARALLEL_MIXED, pure, near, grid, settings));
-    take_contained(member, WB_CANDIDATE_PARALLEL_MIXED, pure, settings);
-    WB_TRY(fit_from(member, NULL, WB_CANDIDATE_PARALLEL_COMBINED, pure, near, grid, settings));
-    take_contained(member, WB_CANDIDATE_PARALLEL_COMBINED, pure, settings);
-    return WB_OK;
-}
-
-static enum wb_status fit_chaboches(struct wb_cycle_member *member,
-                                    const struct wb_cycle_member *first,
-                                    const struct wb_cycle_grid *grid,
-                                    const struct wb_cycle_calibrate_settings *settings)
-{
-    const struct wb_cycle_fit *const near = best_ludwik(member);
+    const struct wb_cycle_fit *const near = best_ludwik(f->member);
     if (!near)
         return WB_OK;
-    WB_TRY(fit_from_specimen(member, first, WB_CANDIDATE_CHABOCHE_ONE, &near->law, near, grid,
-                             settings));
-    const struct wb_cycle_fit *const one = fit_of(member, WB_CANDIDATE_CHABOCHE_ONE);
-    WB_TRY(fit_from(member, first, WB_CANDIDATE_CHABOCHE_TWO, one, near, grid, settings));
-    take_contained(member, WB_CANDIDATE_CHABOCHE_TWO, one, settings);
+    WB_TRY(fit_from_specimen(f, first, WB_CANDIDATE_PARALLEL_KINEMATIC, near));
+    const struct wb_cycle_fit *const pure = fit_of(f->member, WB_CANDIDATE_PARALLEL_KINEMATIC);
+    WB_TRY(fit_from(f, NULL, WB_CANDIDATE_PARALLEL_MIXED, pure, near));
+    take_contained(f, WB_CANDIDATE_PARALLEL_MIXED, pure);
+    WB_TRY(fit_from(f, NULL, WB_CANDIDATE_PARALLEL_COMBINED, pure, near));
+    take_contained(f, WB_CANDIDATE_PARALLEL_COMBINED, pure);
+    return WB_OK;
+}
+
+static enum wb_status fit_chaboches(const struct fitting *f, const struct wb_cycle_member *first)
+{
+    const struct wb_cycle_fit *const near = best_ludwik(f->member);
+    if (!near)
+        return WB_OK;
+    WB_TRY(fit_from_specimen(f, first, WB_CANDIDATE_CHABOCHE_ONE, near));
+    const struct wb_cycle_fit *const one = fit_of(f->member, WB_CANDIDATE_CHABOCHE_ONE);
+    WB_TRY(fit_from(f, first, WB_CANDIDATE_CHABOCHE_TWO, one, near));
+    take_contained(f, WB_CANDIDATE_CHABOCHE_TWO, one);
     return WB_OK;
 }
 
@@ -418,6 +414,7 @@ static enum wb_status fit_member(void *context, int index)
     const int i = work->begin + index;
     struct wb_cycle_member *const member = &work->calibration->members[i];
     const struct wb_cycle_member *const first = i > 0 ? work->calibration->members : NULL;
+    const struct fitting fitting = {member, &work->grid, work->settings};
     const double begin = wb_progress_thread_cpu();
     enum wb_status status = WB_OK;
     switch (work->stage) {
@@ -426,13 +423,13 @@ static enum wb_status fit_member(void *context, int index)
                                     &member->why);
         break;
     case LUDWIKS:
-        status = fit_ludwiks(member, work->settings);
+        status = fit_ludwiks(&fitting);
         break;
     case PARALLELS:
-        status = fit_parallels(member, first, &work->grid, work->settings);
+        status = fit_parallels(&fitting, first);
         break;
     case CHABOCHES:
-        status = fit_chaboches(member, first, &work->grid, work->settings);
+        status = fit_chaboches(&fitting, first);
         break;
     case SHARED:
         find_sensitivity(member, work->calibration->chosen);
@@ -482,19 +479,32 @@ static enum wb_status work_side_by_side(struct work *work, enum stage stage)
     return work->status;
 }
 
-/* Number of Maxwell elements that the dwells show; 0 if unloading was not measured. */
+/* Whether unloading was measured for all specimens. */
+static bool all_have_unloading(const struct wb_cycle_calibration *calibration)
+{
+    for (int i = 0; i < calibration->n_members; i++) {
+        if (!has_unloading(&calibration->members[i]))
+            return false;
+    }
+    return true;
+}
+
+/* Number of Maxwell elements that the dwells show, 0 to 2; 0 if one specimen has no dwell, or if
+ * unloading was not measured. */
 static int count_elements(const struct wb_cycle_calibration *calibration)
 {
     const int n = calibration->n_members;
-    const struct wb_cycle_data **const data = wb_memory_new((size_t)n, sizeof *data);
-    bool has_unloading = true;
+    int held = 0, seen = 0, two = 0;
     for (int i = 0; i < n; i++) {
-        data[i] = &calibration->members[i].data;
-        has_unloading = has_unloading && data[i]->n_loading < data[i]->n_points;
+        struct wb_cycle_relaxation r;
+        wb_cycle_hold_describe(&calibration->members[i].data, &r);
+        held += r.duration > 0.0;
+        seen += r.is_seen;
+        two += r.needs_two;
     }
-    const int elements = has_unloading ? wb_cycle_hold_elements(data, n) : 0;
-    free(data);
-    return elements;
+    if (!all_have_unloading(calibration) || held < n || 2 * seen < n || seen == 0)
+        return 0;
+    return 2 * two < n || two == 0 ? 1 : 2;
 }
 
 /* Reports the reason of the first specimen that failed. */
@@ -510,6 +520,13 @@ static enum wb_status report_failure(const struct wb_cycle_calibration *calibrat
 }
 
 /* --- results of all specimens --- */
+
+/* The law that was fitted to specimen `i`. */
+static const struct wb_law *law_of(const struct wb_cycle_calibration *calibration,
+                                   enum wb_candidate candidate, int i)
+{
+    return &calibration->members[i].answers[candidate].fit.law;
+}
 
 static double outer_radius(const struct wb_cycle_calibration *calibration)
 {
@@ -667,34 +684,27 @@ static bool chaboche_is_needed(const struct wb_cycle_calibration *calibration)
     return isfinite(best) && best > fmax(follows_up_to, follows_noise * calibration->repeat_noise);
 }
 
-static struct wb_law with_rate(const struct wb_law *law, double strain_rate)
-{
-    struct wb_law same = *law;
-    if (strain_rate > 0.0)
-        same.strain_rate = strain_rate;
-    return same;
-}
-
 /* Results of a law at the mean strain rate of the specimens; `value` is indexed by enum
  * wb_cycle_number. */
 static enum wb_status describe_law(const struct wb_cycle_calibration *calibration,
                                    const struct wb_law *fitted, double diameter, double *value)
 {
-    const struct wb_law at_rate = with_rate(fitted, calibration->strain_rate), *const law =
-                                                                                   &at_rate;
+    struct wb_law law = *fitted;
     const struct wb_cycle_stiffness *const s = &calibration->secant;
     const struct wb_cycle_stiffness *const u = &calibration->unloading;
     const double largest = calibration->largest_curvature;
     struct wb_bending bending;
-    WB_TRY(wb_bending_describe(law, diameter, largest, &bending));
+    if (calibration->strain_rate > 0.0)
+        law.strain_rate = calibration->strain_rate;
+    WB_TRY(wb_bending_describe(&law, diameter, largest, &bending));
     value[WB_CYCLE_RIGIDITY] = bending.flexural_rigidity;
     value[WB_CYCLE_RESIDUAL_CURVATURE] = bending.residual_curvature_ratio;
     value[WB_CYCLE_LOOP_ENERGY] = bending.loop_energy;
-    WB_TRY(wb_bending_springback(law, diameter, calibration->mean_length, largest,
+    WB_TRY(wb_bending_springback(&law, diameter, calibration->mean_length, largest,
                                  &value[WB_CYCLE_SPRINGBACK]));
-    WB_TRY(wb_bending_moments(law, diameter, WB_CYCLE_MOMENTS, calibration->curvature,
+    WB_TRY(wb_bending_moments(&law, diameter, WB_CYCLE_MOMENTS, calibration->curvature,
                               value + WB_CYCLE_FIRST_MOMENT));
-    return wb_bending_stiffness(law, diameter, largest, s->n, s->curvature,
+    return wb_bending_stiffness(&law, diameter, largest, s->n, s->curvature,
                                 value + WB_CYCLE_FIRST_SECANT, u->n, u->curvature,
                                 value + WB_CYCLE_FIRST_UNLOADING);
 }
@@ -822,12 +832,12 @@ static void average_chaboche(const struct wb_cycle_calibration *calibration,
                              enum wb_candidate candidate, struct wb_law *average)
 {
     const int n = calibration->n_members;
-    const struct wb_law *const first = &calibration->members[0].answers[candidate].fit.law;
+    const struct wb_law *const first = law_of(calibration, candidate, 0);
     struct wb_material material = first->material;
     double E = 0.0, yield = 0.0, saturation = 0.0, rate = 0.0;
     double stress[WB_LAW_MOST_BACKS] = {0.0}, recovery[WB_LAW_MOST_BACKS] = {0.0};
     for (int i = 0; i < n; i++) {
-        const struct wb_law *const law = &calibration->members[i].answers[candidate].fit.law;
+        const struct wb_law *const law = law_of(calibration, candidate, i);
         /* The fast back stress of one with the fast ones of the others. */
         const bool is_turned = law->n_backs > 1 && law->backs[0].recovery < law->backs[1].recovery;
         E += log(law->material.youngs_modulus) / n;
@@ -857,12 +867,12 @@ static void average_maxwell(const struct wb_cycle_calibration *calibration,
                             enum wb_candidate candidate, struct wb_law *average)
 {
     const int n = calibration->n_members;
-    average->n_maxwell = calibration->members[0].answers[candidate].fit.law.n_maxwell;
+    average->n_maxwell = law_of(calibration, candidate, 0)->n_maxwell;
     average->strain_rate = average->n_maxwell > 0 ? calibration->strain_rate : 0.0;
     for (int k = 0; k < average->n_maxwell; k++) {
         double modulus = 0.0, time = 0.0;
         for (int i = 0; i < n; i++) {
-            const struct wb_law *const law = &calibration->members[i].answers[candidate].fit.law;
+            const struct wb_law *const law = law_of(calibration, candidate, i);
             modulus += law->maxwell[k].modulus / n;
             time += law->maxwell[k].modulus * log(law->maxwell[k].time) / n;
         }
@@ -877,7 +887,7 @@ static void average_relaxed(const struct wb_cycle_calibration *calibration,
                             enum wb_candidate candidate, struct wb_law *average)
 {
     const int n = calibration->n_members;
-    const struct wb_law *const first = &calibration->members[0].answers[candidate].fit.law;
+    const struct wb_law *const first = law_of(calibration, candidate, 0);
     double share = 0.0, E = 0.0, yield = 0.0, hardening = 0.0, exponent = 0.0;
     double moduli[WB_LAW_MOST_PARTS] = {0.0}, yielding = 0.0, kept = 0.0;
     /* K and n are strongly correlated; n and the hardening stress at this plastic strain are not.
@@ -885,7 +895,7 @@ static void average_relaxed(const struct wb_cycle_calibration *calibration,
     const double plastic = 3e-3;
 
     for (int i = 0; i < n; i++) {
-        const struct wb_law *const law = &calibration->members[i].answers[candidate].fit.law;
+        const struct wb_law *const law = law_of(calibration, candidate, i);
         share += law->isotropic_share / n;
         for (int k = 0; k < law->n_parts; k++) {
             const double modulus = law->parts[k].modulus / n;
@@ -933,25 +943,27 @@ static void average_law(const struct wb_cycle_calibration *calibration, enum wb_
     average_maxwell(calibration, candidate, average);
 }
 
+/* Ludwik's law with the same first loading: of such a law its own parameters. */
+static enum wb_status find_equivalent(const struct wb_cycle_calibration *calibration,
+                                      const struct wb_law *law, struct wb_material *ludwik,
+                                      double *misfit)
+{
+    *ludwik = law->material;
+    *misfit = 0.0;
+    return law->form == WB_LAW_LUDWIK
+               ? WB_OK
+               : wb_bending_ludwik(law, 2.0 * outer_radius(calibration),
+                                   calibration->largest_curvature, ludwik, misfit);
+}
+
 static enum wb_status find_equivalents(struct wb_cycle_calibration *calibration)
 {
-    const double diameter = 2.0 * outer_radius(calibration);
-    const double largest = calibration->largest_curvature;
-    if (calibration->law.form == WB_LAW_LUDWIK) {
-        calibration->ludwik = calibration->law.material;
-        calibration->ludwik_misfit = 0.0;
-    } else {
-        WB_TRY(wb_bending_ludwik(&calibration->law, diameter, largest, &calibration->ludwik,
-                                 &calibration->ludwik_misfit));
-    }
+    WB_TRY(find_equivalent(calibration, &calibration->law, &calibration->ludwik,
+                           &calibration->ludwik_misfit));
     for (int i = 0; i < calibration->n_members; i++) {
         struct wb_cycle_member *const member = &calibration->members[i];
-        const struct wb_law *const law = &member->answers[calibration->chosen].fit.law;
-        member->ludwik = law->material;
-        member->ludwik_misfit = 0.0;
-        if (law->form != WB_LAW_LUDWIK)
-            WB_TRY(
-                wb_bending_ludwik(law, diameter, largest, &member->ludwik, &member->ludwik_misfit));
+        WB_TRY(find_equivalent(calibration, law_of(calibration, calibration->chosen, i),
+                               &member->ludwik, &member->ludwik_misfit));
     }
     return WB_OK;
 }
@@ -1014,19 +1026,19 @@ static enum wb_status conclude(struct wb_cycle_calibration *calibration,
                                const struct wb_cycle_calibrate_settings *settings)
 {
     calibration->relaxation_prior = settings->fit.relaxation_prior;
+    calibration->pooled_deviation = settings->pooled_deviation;
+    calibration->pooled_degrees = settings->pooled_degrees;
     WB_TRY(describe_answers(calibration));
     for (int k = 0; k < WB_CYCLE_NUMBERS; k++)
-        wb_cycle_estimate(calibration, k, settings, estimate_of(calibration, k),
-                          &calibration->budget[k]);
+        wb_cycle_estimate(calibration, k, estimate_of(calibration, k), &calibration->budget[k]);
     calibration->is_rigidity_resolved =
         is_near_resolved(&calibration->secant, calibration->rigidity.value) ||
         (calibration->has_unloading &&
          is_near_resolved(&calibration->unloading, calibration->rigidity.value));
     for (int i = 0; i < calibration->n_ranked; i++) {
         struct wb_cycle_rank *const rank = &calibration->ranked[i];
-        wb_cycle_average(calibration, rank->candidate, WB_CYCLE_RIGIDITY, settings,
-                         &rank->rigidity);
-        wb_cycle_average(calibration, rank->candidate, WB_CYCLE_RESIDUAL_CURVATURE, settings,
+        wb_cycle_average(calibration, rank->candidate, WB_CYCLE_RIGIDITY, &rank->rigidity);
+        wb_cycle_average(calibration, rank->candidate, WB_CYCLE_RESIDUAL_CURVATURE,
                          &rank->residual_curvature_ratio);
         average_law(calibration, rank->candidate, &rank->law);
     }
@@ -1100,12 +1112,7 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
     for (int i = work.done; i < calibration->n_members; i++)
         wb_cycle_data_release(&calibration->members[i].data);
     calibration->n_members = work.done;
-    calibration->has_unloading = true;
-    for (int i = 0; i < calibration->n_members; i++) {
-        const struct wb_cycle_data *const data = &calibration->members[i].data;
-        if (data->n_loading == data->n_points)
-            calibration->has_unloading = false;
-    }
+    calibration->has_unloading = all_have_unloading(calibration);
     work.grid = find_grid(calibration);
     int n_stages = calibration->has_unloading ? 2 : 1;
     if (calibration->has_unloading && !work.stopped)

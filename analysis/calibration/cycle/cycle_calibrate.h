@@ -140,6 +140,8 @@ struct wb_cycle_calibration {
     bool is_stopped;
     double largest_curvature; /* 1/m: smallest of the specimens' largest */
     double relaxation_prior;  /* 1, see struct wb_cycle_fit_settings */
+    double pooled_deviation;  /* see struct wb_cycle_calibrate_settings */
+    int pooled_degrees;
     double strain_rate; /* 1/s, of the outer fibre, mean over the specimens: the results of laws
                            with Maxwell elements are stated at this rate; 0: no Maxwell elements */
     struct wb_estimate rigidity, residual_curvature_ratio, loop_energy; /* N m2, 1, J/m */

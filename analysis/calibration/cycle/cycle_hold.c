@@ -120,16 +120,3 @@ void wb_cycle_hold_describe(const struct wb_cycle_data *data,
     r->needs_two =
         sqrt(least / (data->n_held - 3)) > missed_errors && worst > missed_share * r->fall;
 }
-
-int wb_cycle_hold_elements(const struct wb_cycle_data *const *data, int n)
-{
-    int held = 0, seen = 0, two = 0;
-    for (int i = 0; i < n; i++) {
-        struct wb_cycle_relaxation r;
-        wb_cycle_hold_describe(data[i], &r);
-        held += r.duration > 0.0;
-        seen += r.is_seen;
-        two += r.needs_two;
-    }
-    return held < n || 2 * seen < n || seen == 0 ? 0 : 2 * two < n || two == 0 ? 1 : 2;
-}

@@ -22,8 +22,4 @@ struct wb_cycle_relaxation {
 void wb_cycle_hold_describe(const struct wb_cycle_data *data,
                             struct wb_cycle_relaxation *relaxation);
 
-/* Number of Maxwell elements that the dwells of n specimens show, 0 to 2; 0 if one specimen has no
- * dwell. */
-int wb_cycle_hold_elements(const struct wb_cycle_data *const *data, int n);
-
 #endif
