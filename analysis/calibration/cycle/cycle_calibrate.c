@@ -890,9 +890,7 @@ static void average_relaxed(const struct wb_cycle_calibration *calibration,
     const struct wb_law *const first = law_of(calibration, candidate, 0);
     double share = 0.0, E = 0.0, yield = 0.0, hardening = 0.0, exponent = 0.0;
     double moduli[WB_LAW_MOST_PARTS] = {0.0}, yielding = 0.0, kept = 0.0;
-    /* K and n are strongly correlated; n and the hardening stress at this plastic strain are not.
-     */
-    const double plastic = 3e-3;
+    const double plastic = WB_BENDING_PLASTIC_STRAIN;
 
     for (int i = 0; i < n; i++) {
         const struct wb_law *const law = law_of(calibration, candidate, i);

@@ -4,14 +4,12 @@
 #include <stdio.h>
 
 #include "analysis/calibration/cycle/cycle_hold.h"
+#include "analysis/calibration/law/bending.h"
 #include "analysis/dataset/least_squares.h"
 #include "base/units.h"
 
 #define WB_LOG_DOMAIN "cycle"
 
-/* Plastic strain at which the hardening stress of Ludwik's law is a free parameter: in the middle
- * of those of a test, where it is known best. */
-static const double middle_plastic_strain = 3e-3;
 /* Largest exponents. */
 static const double largest_exponent = 1.5;           /* isotropic */
 static const double largest_kinematic_exponent = 1.0; /* a larger exponent would generate work */
@@ -128,14 +126,8 @@ static void relaxed_law_of(const struct wb_cycle_parameters *p, const double *fr
 
     if (c->form == WB_LAW_LUDWIK) {
         const double n = largest_exponent_of(c) * logistic(free[3]);
-        const struct wb_material material = {
-            .hardening = WB_HARDENING_ISOTROPIC_POWER,
-            .youngs_modulus = exp(free[0]),
-            .poissons_ratio = p->poissons_ratio,
-            .yield_stress = exp(free[1]),
-            .strength_coefficient = exp(free[2]) / pow(middle_plastic_strain, n),
-            .hardening_exponent = n,
-        };
+        const struct wb_material material =
+            wb_bending_material(exp(free[0]), p->poissons_ratio, exp(free[1]), exp(free[2]), n);
         wb_law_init_ludwik(law, &material);
         law->isotropic_share = share;
         if (c->is_combined)
@@ -282,7 +274,7 @@ static void start_law(struct wb_cycle_parameters *p, const struct wb_law *law)
         const double part = fmin(fmax(n / most, 1.0 - largest_part), largest_part);
         p->start[0] = log(m->youngs_modulus);
         p->start[1] = log(m->yield_stress);
-        p->start[2] = log(m->strength_coefficient * pow(middle_plastic_strain, n));
+        p->start[2] = log(m->strength_coefficient * pow(WB_BENDING_PLASTIC_STRAIN, n));
         p->start[3] = log(part / (1.0 - part));
     } else if (c->form == WB_LAW_CHABOCHE) {
         if (law->form == WB_LAW_CHABOCHE)
@@ -457,7 +449,7 @@ void wb_cycle_parameters_correlate(const struct wb_cycle_parameters *p,
     if (p->candidate->form == WB_LAW_LUDWIK) {
         const double exponent = fit->law.material.hardening_exponent;
         turn[3][3] = exponent * (1.0 - exponent / largest_exponent_of(p->candidate));
-        turn[2][3] = -turn[3][3] * log(middle_plastic_strain);
+        turn[2][3] = -turn[3][3] * log(WB_BENDING_PLASTIC_STRAIN);
     }
     for (int i = FIRST_BACK; p->candidate->form == WB_LAW_CHABOCHE && i < p->n_form; i += 2)
         turn[i][i + 1] = 1.0;

@@ -7,6 +7,7 @@
 
 #include "analysis/calibration/cycle/cycle_fit.h"
 #include "analysis/calibration/cycle/cycle_model.h"
+#include "analysis/calibration/law/bending.h"
 #include "analysis/dataset/fit.h"
 #include "base/memory.h"
 
@@ -46,15 +47,9 @@ struct problem {
 
 static void law_of(const struct problem *p, const double *numbers, struct wb_law *law)
 {
-    const double n = numbers[EXPONENT];
-    const struct wb_material material = {
-        .hardening = WB_HARDENING_ISOTROPIC_POWER,
-        .youngs_modulus = exp(numbers[MODULUS]),
-        .poissons_ratio = p->poissons_ratio,
-        .yield_stress = exp(numbers[YIELD]),
-        .strength_coefficient = exp(numbers[STRESS]) / pow(WB_VALLEY_PLASTIC_STRAIN, n),
-        .hardening_exponent = n,
-    };
+    const struct wb_material material =
+        wb_bending_material(exp(numbers[MODULUS]), p->poissons_ratio, exp(numbers[YIELD]),
+                            exp(numbers[STRESS]), numbers[EXPONENT]);
     wb_law_init_ludwik(law, &material);
 }
 
@@ -105,53 +100,50 @@ static enum wb_status find_slopes(struct problem *p, gsl_vector *base, double *m
     return WB_OK;
 }
 
+/* Least squares of A x = y by the first n columns of the slopes; false if it fails. */
+static bool solve(const struct problem *p, size_t n, const gsl_vector *y, gsl_vector *x,
+                  gsl_matrix *covariance)
+{
+    const size_t rows = p->slopes->size1;
+    const gsl_matrix_const_view slopes = gsl_matrix_const_submatrix(p->slopes, 0, 0, rows, n);
+    gsl_multifit_linear_workspace *const w = wb_memory_need(gsl_multifit_linear_alloc(rows, n));
+    double sum;
+    const bool found = gsl_multifit_linear(&slopes.matrix, y, x, covariance, &sum, w) == 0;
+    gsl_multifit_linear_free(w);
+    return found;
+}
+
 /* Standard errors of the stress and of n from the residuals of the loading. */
 static bool find_errors(const struct problem *p, const gsl_vector *base, double *stress,
                         double *exponent)
 {
-    const size_t rows = p->slopes->size1;
-    gsl_multifit_linear_workspace *const w =
-        wb_memory_need(gsl_multifit_linear_alloc(rows, NUMBERS));
-    gsl_matrix *const covariance = wb_memory_need(gsl_matrix_alloc(NUMBERS, NUMBERS));
-    gsl_vector *const x = wb_memory_need(gsl_vector_alloc(NUMBERS));
-    double sum = (double)NAN;
-    bool found = gsl_multifit_linear(p->slopes, base, x, covariance, &sum, w) == 0;
-    if (found) {
-        *stress = sqrt(gsl_matrix_get(covariance, STRESS, STRESS)) * p->scale[STRESS];
-        *exponent = sqrt(gsl_matrix_get(covariance, EXPONENT, EXPONENT)) * p->scale[EXPONENT];
-        found = *stress > 0.0 && *exponent > 0.0 && isfinite(*stress) && isfinite(*exponent);
-    }
-    gsl_multifit_linear_free(w);
-    gsl_matrix_free(covariance);
-    gsl_vector_free(x);
-    return found;
+    double numbers[NUMBERS], squares[NUMBERS * NUMBERS];
+    gsl_vector_view x = gsl_vector_view_array(numbers, NUMBERS);
+    gsl_matrix_view covariance = gsl_matrix_view_array(squares, NUMBERS, NUMBERS);
+    if (!solve(p, NUMBERS, base, &x.vector, &covariance.matrix))
+        return false;
+    *stress = sqrt(gsl_matrix_get(&covariance.matrix, STRESS, STRESS)) * p->scale[STRESS];
+    *exponent = sqrt(gsl_matrix_get(&covariance.matrix, EXPONENT, EXPONENT)) * p->scale[EXPONENT];
+    return *stress > 0.0 && *exponent > 0.0 && isfinite(*stress) && isfinite(*exponent);
 }
 
 /* Moves the free parameters so that they compensate a step of stress and exponent, to first order.
  */
 static bool adapt(const struct problem *p, const gsl_vector *base, double *numbers)
 {
-    const size_t rows = p->slopes->size1;
-    gsl_matrix_const_view free_slopes =
-        gsl_matrix_const_submatrix(p->slopes, 0, 0, rows, NUISANCES);
-    gsl_multifit_linear_workspace *const w =
-        wb_memory_need(gsl_multifit_linear_alloc(rows, NUISANCES));
-    gsl_matrix *const covariance = wb_memory_need(gsl_matrix_alloc(NUISANCES, NUISANCES));
-    gsl_vector *const x = wb_memory_need(gsl_vector_alloc(NUISANCES));
-    gsl_vector *const y = wb_memory_need(gsl_vector_alloc(rows));
-    double sum;
-    for (size_t i = 0; i < rows; i++) {
+    double change[NUISANCES], squares[NUISANCES * NUISANCES];
+    gsl_vector_view x = gsl_vector_view_array(change, NUISANCES);
+    gsl_matrix_view covariance = gsl_matrix_view_array(squares, NUISANCES, NUISANCES);
+    gsl_vector *const y = wb_memory_need(gsl_vector_alloc(base->size));
+    for (size_t i = 0; i < base->size; i++) {
         double now = gsl_vector_get(base, i);
         for (size_t k = NUISANCES; k < NUMBERS; k++)
             now += gsl_matrix_get(p->slopes, i, k) * (numbers[k] - p->best[k]) / p->scale[k];
         gsl_vector_set(y, i, -now);
     }
-    const bool adapted = gsl_multifit_linear(&free_slopes.matrix, y, x, covariance, &sum, w) == 0;
+    const bool adapted = solve(p, NUISANCES, y, &x.vector, &covariance.matrix);
     for (size_t k = 0; adapted && k < NUISANCES; k++)
-        numbers[k] = p->best[k] + gsl_vector_get(x, k) * p->scale[k];
-    gsl_multifit_linear_free(w);
-    gsl_matrix_free(covariance);
-    gsl_vector_free(x);
+        numbers[k] = p->best[k] + change[k] * p->scale[k];
     gsl_vector_free(y);
     return adapted;
 }
@@ -177,7 +169,7 @@ static enum wb_status fill_nodes(struct wb_cycle_valley *valley, struct problem 
                 continue;
             node->exponent = n;
             node->stress = exp(numbers[STRESS]);
-            node->strength = exp(numbers[STRESS]) / pow(WB_VALLEY_PLASTIC_STRAIN, n);
+            node->strength = exp(numbers[STRESS]) / pow(WB_BENDING_PLASTIC_STRAIN, n);
             if (adapt(p, base, numbers))
                 WB_TRY(run(p, numbers, &node->misfit));
         }
@@ -218,7 +210,7 @@ static void take_face(struct wb_cycle_valley *valley, int i, int k)
                 continue;
             const double n = low->exponent + (high->exponent - low->exponent) * b / fine;
             const double stress = low->stress * pow(high->stress / low->stress, (double)a / fine);
-            const double K = stress / pow(WB_VALLEY_PLASTIC_STRAIN, n);
+            const double K = stress / pow(WB_BENDING_PLASTIC_STRAIN, n);
             valley->strength_low = fmin(valley->strength_low, K);
             valley->strength_high = fmax(valley->strength_high, K);
             valley->exponent_low = fmin(valley->exponent_low, n);
@@ -279,7 +271,7 @@ static enum wb_status find_best(struct problem *p, const struct wb_law *start,
     p->best[LEVEL] = fit.level;
     p->uneven_angle = fit.uneven_angle;
     p->best[STRESS] =
-        log(best->strength_coefficient * pow(WB_VALLEY_PLASTIC_STRAIN, best->hardening_exponent));
+        log(best->strength_coefficient * pow(WB_BENDING_PLASTIC_STRAIN, best->hardening_exponent));
     p->best[EXPONENT] = best->hardening_exponent;
     p->bow_prior = fmax(1e-6, isfinite(fit.bow_angle_error) ? fit.bow_angle_error : 0.01);
     for (int k = 0; k < NUMBERS; k++)

@@ -9,6 +9,7 @@
 #define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_VALLEY_H
 
 #include "analysis/calibration/cycle/cycle_data.h"
+#include "analysis/calibration/law/bending.h"
 #include "base/reason.h"
 #include "base/status.h"
 #include "fe/material/law.h"
@@ -17,13 +18,9 @@ enum {
     WB_VALLEY_NODES = 15 /* in each direction; odd */
 };
 
-/* Plastic strain in the middle of those of a test; the hardening stress at this strain is a
- * parameter, in place of K. */
-#define WB_VALLEY_PLASTIC_STRAIN 3e-3
-
 struct wb_cycle_valley_node {
     double strength, exponent; /* K (Pa), n */
-    double stress;             /* Pa: hardening stress at that plastic strain */
+    double stress;             /* Pa: hardening stress at WB_BENDING_PLASTIC_STRAIN */
     double misfit;             /* RMS over the largest force; NaN: no such law, or not computed */
 };
 

@@ -27,8 +27,8 @@ enum {
 static const double first_of_equivalent = 0.01;
 /* Residual of parameters that are not a valid law: far above any other. */
 static const double lost_residual = 1e3;
-/* Plastic strain at which the hardening stress is the free parameter; limits of the exponent. */
-static const double middle_plastic_strain = 3e-3, least_exponent = 1e-3, largest_exponent = 1.5;
+/* Limits of the equivalent's exponent. */
+static const double least_exponent = 1e-3, largest_exponent = 1.5;
 /* Smallest yield strain of the equivalent, as part of the outer fibre's strain at the first
  * curvature: for a wire that yields from the start the best one would be zero. */
 static const double least_yield_strain = 0.1;
@@ -229,6 +229,20 @@ enum wb_status wb_bending_springback(const struct wb_law *law, double diameter, 
 
 /* --- the equivalent of Ludwik's form --- */
 
+struct wb_material wb_bending_material(double youngs_modulus, double poissons_ratio,
+                                       double yield_stress, double hardening_stress,
+                                       double exponent)
+{
+    return (struct wb_material){
+        .hardening = WB_HARDENING_ISOTROPIC_POWER,
+        .youngs_modulus = youngs_modulus,
+        .poissons_ratio = poissons_ratio,
+        .yield_stress = yield_stress,
+        .strength_coefficient = hardening_stress / pow(WB_BENDING_PLASTIC_STRAIN, exponent),
+        .hardening_exponent = exponent,
+    };
+}
+
 struct equivalent {
     double diameter, poissons_ratio;
     double least_strain; /* of yield */
@@ -246,14 +260,8 @@ static int equivalent_residuals(const gsl_vector *x, void *context, gsl_vector *
     const double n =
         least_exponent + (largest_exponent - least_exponent) / (1.0 + exp(-gsl_vector_get(x, 3)));
     const double E = exp(gsl_vector_get(x, 0));
-    e->material = (struct wb_material){
-        .hardening = WB_HARDENING_ISOTROPIC_POWER,
-        .youngs_modulus = E,
-        .poissons_ratio = e->poissons_ratio,
-        .yield_stress = E * (e->least_strain + exp(gsl_vector_get(x, 1))),
-        .strength_coefficient = exp(gsl_vector_get(x, 2)) / pow(middle_plastic_strain, n),
-        .hardening_exponent = n,
-    };
+    const double yield = E * (e->least_strain + exp(gsl_vector_get(x, 1)));
+    e->material = wb_bending_material(E, e->poissons_ratio, yield, exp(gsl_vector_get(x, 2)), n);
     wb_law_init_ludwik(&law, &e->material);
     if (wb_law_check(&law, &why) != WB_OK) {
         gsl_vector_set_all(f, lost_residual);

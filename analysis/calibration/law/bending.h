@@ -5,6 +5,15 @@
 #include "base/status.h"
 #include "fe/material/law.h"
 
+/* Plastic strain in the middle of those of a test. In fits, the hardening stress at this strain is
+ * a parameter in place of K, which is strongly correlated with n. */
+#define WB_BENDING_PLASTIC_STRAIN 3e-3
+
+/* Ludwik's law with isotropic hardening, of that hardening stress (Pa). */
+struct wb_material wb_bending_material(double youngs_modulus, double poissons_ratio,
+                                       double yield_stress, double hardening_stress,
+                                       double exponent);
+
 struct wb_bending {
     double flexural_rigidity;        /* EI of the virgin section, N m2 */
     double residual_curvature_ratio; /* residual over largest curvature, after bending to the

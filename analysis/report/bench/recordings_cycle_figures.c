@@ -553,7 +553,7 @@ static enum wb_status add_region(struct wb_panel *panel, const struct wb_cycle_v
             x[k] = contour.points[loop->first + k % loop->n][0];
             y[k] = contour.points[loop->first + k % loop->n][1];
             if (!is_stress)
-                y[k] /= pow(WB_VALLEY_PLASTIC_STRAIN, x[k]);
+                y[k] /= pow(WB_BENDING_PLASTIC_STRAIN, x[k]);
         }
         if (loop->level == 1) {
             wb_figure_add_line(panel, label, (size_t)loop->n + 1, x, y, &line);
@@ -628,7 +628,7 @@ static enum wb_status add_misfits(struct wb_figure *figure, const struct wb_cycl
     WB_TRY(add_region(panel, valley, true, NULL));
     const double n = valley->best.hardening_exponent;
     const double stress =
-        valley->best.strength_coefficient * pow(WB_VALLEY_PLASTIC_STRAIN, n) / WB_MPA;
+        valley->best.strength_coefficient * pow(WB_BENDING_PLASTIC_STRAIN, n) / WB_MPA;
     const struct wb_figure_style best = {
         .colour = wb_palette_warning(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
     wb_figure_add_line(panel, NULL, 1, &n, &stress, &best);
