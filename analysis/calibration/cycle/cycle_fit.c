@@ -55,6 +55,7 @@ struct wb_cycle_search {
     struct wb_cycle_parameters parameters;
     struct wb_cycle_model *model;
     int n_residuals;
+    struct wb_memory buffers;                               /* of the model's runs */
     double *tension, *distance, *weight;                    /* weight: (n_points) */
     struct wb_cycle_neighbour neighbours[WB_FIT_MOST_FREE]; /* (n_free), for the Jacobian */
     double last_x[WB_FIT_MOST_FREE];                        /* parameters of the last residuals, */
@@ -375,16 +376,27 @@ static void find_errors(const struct wb_cycle_search *p, gsl_multifit_nlinear_wo
     gsl_matrix_free(covariance);
 }
 
-/* Allocates the beam, and its neighbours. */
+/* Creates the beam of the search. */
+static enum wb_status create_model(struct wb_cycle_search *p, const struct wb_law *law,
+                                   int n_neighbours)
+{
+    const struct wb_cycle_fit_settings *const s = &p->parameters.settings;
+    const struct wb_cycle_model_settings how = {s->n_elements, s->n_fibres, n_neighbours};
+    return wb_cycle_model_create(&p->model, p->parameters.data, law, &how);
+}
+
+/* Allocates the results of the beam, and of its neighbours. */
 static void take_buffers(struct wb_cycle_search *p, int n_neighbours)
 {
-    p->tension = wb_memory_new((size_t)p->parameters.data->n_points, sizeof *p->tension);
-    p->distance = wb_memory_new((size_t)p->parameters.data->n_places, sizeof *p->distance);
-    p->last = wb_memory_new((size_t)p->n_residuals, sizeof *p->last);
+    const size_t points = (size_t)p->parameters.data->n_points;
+    const size_t places = (size_t)p->parameters.data->n_places;
+    p->tension = wb_memory_take(&p->buffers, points, sizeof *p->tension);
+    p->distance = wb_memory_take(&p->buffers, places, sizeof *p->distance);
+    p->last = wb_memory_take(&p->buffers, (size_t)p->n_residuals, sizeof *p->last);
     for (int k = 0; k < n_neighbours; k++) {
         struct wb_cycle_neighbour *const neighbour = &p->neighbours[k];
-        neighbour->tension = wb_memory_new((size_t)p->parameters.data->n_points, sizeof(double));
-        neighbour->distance = wb_memory_new((size_t)p->parameters.data->n_places, sizeof(double));
+        neighbour->tension = wb_memory_take(&p->buffers, points, sizeof(double));
+        neighbour->distance = wb_memory_take(&p->buffers, places, sizeof(double));
     }
 }
 
@@ -392,16 +404,8 @@ static void free_buffers(struct wb_cycle_search *p)
 {
     wb_cycle_model_destroy(p->model);
     p->model = NULL;
-    free(p->tension);
-    free(p->distance);
-    free(p->last);
-    p->tension = p->distance = p->last = NULL;
+    wb_memory_release(&p->buffers);
     p->has_last = false;
-    for (int k = 0; k < p->parameters.n_free; k++) {
-        free(p->neighbours[k].tension);
-        free(p->neighbours[k].distance);
-        p->neighbours[k].tension = p->neighbours[k].distance = NULL;
-    }
 }
 
 /* A Maxwell element with a given part of the stress of the outer fibre at the turn. */
@@ -431,8 +435,6 @@ static gsl_matrix *factor_squares(const gsl_matrix *J)
 static void find_altered(struct wb_cycle_search *p, const gsl_matrix *squares, const double *r,
                          enum wb_cycle_shared shared, struct wb_cycle_fit *fit)
 {
-    const struct wb_cycle_model_settings how = {p->parameters.settings.n_elements,
-                                                p->parameters.settings.n_fibres, 0};
     struct wb_cycle_data altered;
     struct wb_cycle_search q = *p;
     double free_numbers[WB_FIT_MOST_FREE], numbers[WB_FIT_MOST_FREE];
@@ -445,7 +447,7 @@ static void find_altered(struct wb_cycle_search *p, const gsl_matrix *squares, c
     gsl_vector *const change = wb_memory_need(gsl_vector_alloc((size_t)p->n_residuals));
     gsl_vector_view step = gsl_vector_view_array(numbers, (size_t)p->parameters.n_free);
     q.parameters.data = &altered;
-    bool good = wb_cycle_model_create(&q.model, &altered, &fit->law, &how) == WB_OK &&
+    bool good = create_model(&q, &fit->law, 0) == WB_OK &&
                 residuals(&q, p->slopes_x, change->data) == GSL_SUCCESS && q.run.reached;
     for (int i = 0; i < p->n_residuals && good; i++)
         change->data[i] = r[i] - change->data[i];
@@ -468,12 +470,10 @@ static void find_altered(struct wb_cycle_search *p, const gsl_matrix *squares, c
 void wb_cycle_fit_find_altered(struct wb_cycle_fit *fit)
 {
     struct wb_cycle_search *const p = fit->search;
-    const struct wb_cycle_model_settings how = {p->parameters.settings.n_elements,
-                                                p->parameters.settings.n_fibres, 0};
     double *const r = wb_memory_new((size_t)p->n_residuals, sizeof *r);
     gsl_matrix *const squares = factor_squares(p->slopes);
     take_buffers(p, 0);
-    if (squares && wb_cycle_model_create(&p->model, p->parameters.data, &fit->law, &how) == WB_OK &&
+    if (squares && create_model(p, &fit->law, 0) == WB_OK &&
         residuals(p, p->slopes_x, r) == GSL_SUCCESS && p->run.reached) {
         for (int i = 0; i < WB_SHARED; i++)
             find_altered(p, squares, r, i, fit);
@@ -650,15 +650,6 @@ static enum wb_status search(struct wb_cycle_fit *fit, struct wb_cycle_search *p
     return WB_OK;
 }
 
-static void release_search(struct wb_cycle_search *p)
-{
-    if (!p)
-        return;
-    free(p->weight);
-    gsl_matrix_free(p->slopes);
-    free(p);
-}
-
 enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_data *data,
                                 enum wb_candidate candidate, const struct wb_law *start,
                                 const struct wb_cycle_fit *near, const struct wb_cycle_grid *grid,
@@ -681,8 +672,6 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     wb_cycle_parameters_at(&p->parameters, no_step, free_numbers);
     wb_cycle_parameters_law(&p->parameters, free_numbers, &law);
 
-    const struct wb_cycle_model_settings how = {settings->n_elements, settings->n_fibres,
-                                                p->parameters.n_free};
     const size_t points = (size_t)data->n_points;
     take_buffers(p, p->parameters.n_free);
     p->weight = wb_memory_new(points, sizeof *p->weight);
@@ -693,7 +682,7 @@ enum wb_status wb_cycle_fit_run(struct wb_cycle_fit *fit, const struct wb_cycle_
     fit->tension = wb_memory_new(points, sizeof *fit->tension);
     gsl_multifit_nlinear_workspace *const w =
         wb_least_squares_create(p->n_residuals, p->parameters.n_free);
-    enum wb_status status = wb_cycle_model_create(&p->model, data, &law, &how);
+    enum wb_status status = create_model(p, &law, p->parameters.n_free);
     if (status == WB_OK)
         status = search(fit, p, w, near, why);
     fit->runs = p->runs;
@@ -715,8 +704,12 @@ struct wb_cycle_bow wb_cycle_fit_bow(const struct wb_cycle_fit *fit, double leng
 
 void wb_cycle_fit_release(struct wb_cycle_fit *fit)
 {
+    if (fit->search) {
+        free(fit->search->weight);
+        gsl_matrix_free(fit->search->slopes);
+    }
+    free(fit->search);
     free(fit->tension);
-    release_search(fit->search);
     fit->tension = NULL;
     fit->search = NULL;
 }

@@ -113,7 +113,7 @@ static double harden_parts(struct wb_law_part *parts, double share)
     return growth / (1.0 + growth);
 }
 
-/* Ludwik's law: ln E, ln sigma_Y, ln(hardening stress at the plastic strain above), logistic
+/* Ludwik's law: ln E, ln sigma_Y, ln(hardening stress at WB_BENDING_PLASTIC_STRAIN), logistic
  * exponent. Parallel parts: moduli over the initial ones, see wb_least_squares_positive(). Then the
  * logistic share of mixed hardening. */
 static void relaxed_law_of(const struct wb_cycle_parameters *p, const double *free,
@@ -130,8 +130,7 @@ static void relaxed_law_of(const struct wb_cycle_parameters *p, const double *fr
             wb_bending_material(exp(free[0]), p->poissons_ratio, exp(free[1]), exp(free[2]), n);
         wb_law_init_ludwik(law, &material);
         law->isotropic_share = share;
-        if (c->is_combined)
-            wb_law_init_combined(law, &material, share);
+        law->is_combined = c->is_combined;
         return;
     }
     if (c->form == WB_LAW_CHABOCHE) {
@@ -388,15 +387,6 @@ int wb_cycle_parameters_priors(const struct wb_cycle_parameters *p, const double
     return at;
 }
 
-static int count_priors(const struct wb_cycle_parameters *p)
-{
-    const struct wb_cycle_parameters_candidate *const c = p->candidate;
-    const int priors = c->form == WB_LAW_PARALLEL   ? WB_FIT_PARTS - 3
-                       : c->form == WB_LAW_CHABOCHE ? 2 + 2 * c->n_backs
-                                                    : 2;
-    return 2 + priors + c->has_share + 2 * p->n_maxwell + (p->settings.zero_prior > 0.0);
-}
-
 void wb_cycle_parameters_init(struct wb_cycle_parameters *p, const struct wb_cycle_data *data,
                               enum wb_candidate candidate, const struct wb_law *start,
                               const struct wb_cycle_fit *near, const struct wb_cycle_grid *grid,
@@ -418,9 +408,12 @@ void wb_cycle_parameters_init(struct wb_cycle_parameters *p, const struct wb_cyc
     const int own = WB_CYCLE_UNEVEN + (data->n_places > 0);
     p->n_law = p->n_form + 2 * p->n_maxwell;
     p->n_free = p->n_law + (settings->zero_prior > 0.0 ? WB_CYCLE_SPECIMEN_PARAMETERS : own);
-    p->n_priors = count_priors(p);
     start_law(p, start);
     start_specimen(p, near);
+    double priors[2 * WB_FIT_MOST_FREE];
+    struct wb_law law;
+    wb_cycle_parameters_law(p, p->start, &law);
+    p->n_priors = wb_cycle_parameters_priors(p, p->start, &law, priors);
 }
 
 bool wb_cycle_parameters_at_bound(const struct wb_cycle_parameters *p, const double *free)
