@@ -56,20 +56,15 @@ void wb_tensile_default_settings(struct wb_tensile_settings *settings)
  * true stress over plastic strain. */
 struct curve {
     size_t n;
-    double *strain, *stress; /* (n), owned */
+    double *strain, *stress; /* (n) */
 };
 
-static void release(struct curve *curve)
-{
-    free(curve->strain);
-    free(curve->stress);
-    *curve = (struct curve){0, NULL, NULL};
-}
+static const struct wb_tensile_law no_law = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
 
 /* Reads the rows up to the largest force, averaged in equal bins so that there are at most
  * MOST_POINTS. Force and travel are zeroed at the first row. */
-static enum wb_status take_curve(struct curve *curve, const struct wb_dataset *dataset,
-                                 struct wb_reason *why)
+static enum wb_status take_curve(struct curve *curve, struct wb_memory *memory,
+                                 const struct wb_dataset *dataset, struct wb_reason *why)
 {
     const struct wb_test_info *const info = &dataset->info;
     /* The crosshead's travel includes the machine's deformation; an extensometer does not measure
@@ -92,8 +87,8 @@ static enum wb_status take_curve(struct curve *curve, const struct wb_dataset *d
             "sample %d: %zu rows up to the largest force: too few for a tensile curve",
             info->sample, n);
     const size_t bin = 1 + (n - 1) / MOST_POINTS;
-    curve->strain = wb_memory_new(n / bin + 1, sizeof(double));
-    curve->stress = wb_memory_new(n / bin + 1, sizeof(double));
+    curve->strain = wb_memory_take(memory, n / bin + 1, sizeof(double));
+    curve->stress = wb_memory_take(memory, n / bin + 1, sizeof(double));
     for (size_t i = 0; i < n; i += bin) {
         const size_t end = i + bin < n ? i + bin : n;
         double elongation = 0.0, force = 0.0;
@@ -107,11 +102,6 @@ static enum wb_status take_curve(struct curve *curve, const struct wb_dataset *d
     return WB_OK;
 }
 
-/* Sums for straight lines through points i..j. */
-struct sums {
-    double x, y, xx, xy;
-};
-
 /* Finds the steepest least-squares line through a stretch of neighbouring points that spans enough
  * stress, and its intersection with S = 0. */
 static bool find_start(const struct curve *curve, double stretch,
@@ -122,27 +112,26 @@ static bool find_start(const struct curve *curve, double stretch,
     const double shift = curve->strain[0];
     double best = 0.0;
     for (size_t i = 0; i + LEAST_WINDOW <= curve->n; i++) {
-        struct sums s = {0.0, 0.0, 0.0, 0.0};
+        double sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0; /* over the points i..j */
         double low = HUGE_VAL, high = -HUGE_VAL;
         for (size_t j = i; j < curve->n; j++) {
             const double x = curve->strain[j] - shift, y = curve->stress[j];
             const double n = (double)(j - i + 1);
-            s.x += x;
-            s.y += y;
-            s.xx += x * x;
-            s.xy += x * y;
+            sum_x += x;
+            sum_y += y;
+            sum_xx += x * x;
+            sum_xy += x * y;
             low = fmin(low, y);
             high = fmax(high, y);
             if (j - i + 1 < LEAST_WINDOW || high - low < span)
                 continue;
-            const double width = n * s.xx - s.x * s.x;
-            const double slope = width > 0.0 ? (n * s.xy - s.x * s.y) / width : 0.0;
+            const double width = n * sum_xx - sum_x * sum_x;
+            const double slope = width > 0.0 ? (n * sum_xy - sum_x * sum_y) / width : 0.0;
             if (slope > best) {
                 best = slope;
                 specimen->slope = slope;
-                specimen->slack = shift + (s.x - s.y / slope) / n;
+                specimen->slack = shift + (sum_x - sum_y / slope) / n;
                 specimen->slope_from = low;
-                specimen->slope_to = high;
             }
             /* A longer stretch of a curve that bends over is not steeper. */
             if (high - low > 2.0 * span)
@@ -310,18 +299,21 @@ static void fit_eq7(const double *strain, const double *stress, size_t n, double
 /* --- one specimen --- */
 
 static enum wb_status run_specimen(struct wb_tensile_specimen *specimen, struct curve *curve,
-                                   const struct wb_dataset *dataset,
+                                   struct wb_memory *memory, const struct wb_dataset *dataset,
                                    const struct wb_tensile_settings *settings,
                                    struct wb_reason *why)
 {
-    const struct wb_tensile_law none = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
-    memset(specimen, 0, sizeof *specimen);
-    specimen->sample = dataset->info.sample;
-    specimen->direct = specimen->eq7 = none;
-    specimen->n_low = specimen->n_high = specimen->proof_stress = (double)NAN;
+    *specimen = (struct wb_tensile_specimen){
+        .sample = dataset->info.sample,
+        .proof_stress = (double)NAN,
+        .direct = no_law,
+        .eq7 = no_law,
+        .n_low = (double)NAN,
+        .n_high = (double)NAN,
+    };
     for (int k = 0; k < WB_TENSILE_STRESSES; k++)
         specimen->stress[k] = (double)NAN;
-    WB_TRY(take_curve(curve, dataset, why));
+    WB_TRY(take_curve(curve, memory, dataset, why));
     specimen->strength = curve->stress[curve->n - 1];
     if (!(specimen->strength > 0.0) || !find_start(curve, settings->stretch, specimen))
         return wb_fail_to(why, WB_ERR_DATA,
@@ -390,10 +382,8 @@ static void summarise(struct wb_tensile_result *result)
 {
 #define OVER(member) over_specimens(result, offsetof(struct wb_tensile_specimen, member))
     result->slope = OVER(slope);
-    result->youngs_modulus.mean = result->youngs_modulus.low = result->youngs_modulus.high =
-        (double)NAN;
-    if (result->own_elongation)
-        result->youngs_modulus = result->slope;
+    const struct wb_tensile_number unknown = {0, (double)NAN, (double)NAN, (double)NAN};
+    result->youngs_modulus = result->own_elongation ? result->slope : unknown;
     result->proof_stress = OVER(proof_stress);
     result->strength = OVER(strength);
     result->uniform_strain = OVER(uniform_strain);
@@ -456,12 +446,6 @@ static enum wb_status check_same(const struct wb_dataset *const *datasets, int n
     return WB_OK;
 }
 
-/* True stress at a plastic strain within the curve. */
-static double true_stress(const struct curve *curve, double plastic)
-{
-    return stress_at(curve->strain, curve->stress, curve->n, plastic);
-}
-
 /* The mean of the true curves over their common range, and its least-squares law. */
 static void fit_mean(struct wb_tensile_result *result, const struct curve *curves,
                      const struct wb_tensile_settings *settings)
@@ -469,12 +453,12 @@ static void fit_mean(struct wb_tensile_result *result, const struct curve *curve
     enum {
         POINTS = 300
     };
-    const struct wb_tensile_law none = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
-    struct wb_tensile_specimen mean = {.direct = none, .n_low = (double)NAN, .n_high = (double)NAN};
+    struct wb_tensile_specimen mean = {
+        .direct = no_law, .n_low = (double)NAN, .n_high = (double)NAN};
     double strain[POINTS], stress[POINTS];
     double to = settings->fit_to > 0.0 ? settings->fit_to : HUGE_VAL;
     size_t n = 0;
-    result->of_mean = none;
+    result->of_mean = no_law;
     result->of_mean_n_low = result->of_mean_n_high = (double)NAN;
     for (int i = 0; i < result->n_specimens; i++) {
         if (!isfinite(result->specimens[i].direct.rms))
@@ -485,7 +469,7 @@ static void fit_mean(struct wb_tensile_result *result, const struct curve *curve
         const double plastic = settings->fit_from + (to - settings->fit_from) * (k + 0.5) / POINTS;
         double sum = 0.0;
         for (int i = 0; i < result->n_specimens; i++)
-            sum += true_stress(&curves[i], plastic);
+            sum += stress_at(curves[i].strain, curves[i].stress, curves[i].n, plastic);
         if (!(plastic > 0.0) || !isfinite(sum))
             continue;
         strain[n] = plastic;
@@ -499,19 +483,12 @@ static void fit_mean(struct wb_tensile_result *result, const struct curve *curve
     result->of_mean_n_high = mean.n_high;
 }
 
-static void release_all(struct curve *curves, int n)
-{
-    for (int i = 0; i < n; i++)
-        release(&curves[i]);
-    free(curves);
-}
-
 enum wb_status wb_tensile_run(struct wb_tensile_result *result,
                               const struct wb_dataset *const *datasets, int n,
                               const struct wb_tensile_settings *settings, struct wb_reason *why)
 {
-    struct wb_tensile_result made;
-    memset(&made, 0, sizeof made);
+    struct wb_tensile_result made = {.n_specimens = 0};
+    struct wb_memory memory = {0};
     if (n < 1)
         return wb_fail_to(why, WB_ERR_ARGUMENT, "no tensile test given");
     WB_TRY(wb_setting_check(&wb_tensile_table, settings, why));
@@ -523,10 +500,10 @@ enum wb_status wb_tensile_run(struct wb_tensile_result *result,
     made.area = info->piece.area;
     made.gauge_length = info->length;
     made.specimens = wb_memory_new((size_t)n, sizeof *made.specimens);
-    struct curve *const curves = wb_memory_new((size_t)n, sizeof *curves);
+    struct curve *const curves = wb_memory_take(&memory, (size_t)n, sizeof *curves);
     enum wb_status status = WB_OK;
     for (int i = 0; status == WB_OK && i < n; i++)
-        status = run_specimen(&made.specimens[i], &curves[i], datasets[i], settings, why);
+        status = run_specimen(&made.specimens[i], &curves[i], &memory, datasets[i], settings, why);
     if (status == WB_OK) {
         made.n_specimens = n;
         summarise(&made);
@@ -535,7 +512,7 @@ enum wb_status wb_tensile_run(struct wb_tensile_result *result,
     } else {
         wb_tensile_release(&made);
     }
-    release_all(curves, n);
+    wb_memory_release(&memory);
     return status;
 }
 

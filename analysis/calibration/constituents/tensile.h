@@ -62,7 +62,7 @@ struct wb_tensile_specimen {
     bool start_is_straight;             /* otherwise quantities that need plastic strain are NaN */
     double slack;                       /* strain */
     double slope;                       /* Pa, of the start */
-    double slope_from, slope_to;        /* Pa, stresses between which it was found */
+    double slope_from;                  /* Pa, smallest stress of the stretch */
     double proof_stress;                /* Pa, engineering; NaN: not reached */
     double strength;                    /* Pa, engineering: at the largest force */
     double uniform_strain;              /* engineering strain there */
