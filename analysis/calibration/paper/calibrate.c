@@ -69,23 +69,17 @@ static const struct wb_setting rows[] = {
      .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
     {WB_ROW_QUANTITY(wb_calibrate_settings, step, "step_mm", "mm", WB_MM, 1e-2, 100.0, 0.5),
      WB_ROW_OPTION("step-mm", "H", "Deflection step of the comparison"),
-     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
-                WB_CALIBRATE_REPORT},
+     .applies = WB_CALIBRATE_EVERYWHERE},
     {WB_ROW_BOOLEAN(wb_calibrate_settings, straight, "straight", false),
      WB_ROW_OPTION("straight", NULL, "Ignore the natural shape (bow) of the samples"),
-     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
-                WB_CALIBRATE_REPORT},
+     .applies = WB_CALIBRATE_EVERYWHERE},
     {WB_ROW_BOOLEAN(wb_calibrate_settings, restart, "restart", true),
      WB_ROW_OPTION("no-restart", NULL, "Do not restart the simplex from the optimum"),
      .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT},
     {WB_ROW_INTEGER(wb_calibrate_settings, n_elements, "elements", 2, 2000, 50),
-     WB_ROW_OPTION("elements", "N", "Beam elements"),
-     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
-                WB_CALIBRATE_REPORT},
+     WB_ROW_OPTION("elements", "N", "Beam elements"), .applies = WB_CALIBRATE_EVERYWHERE},
     {WB_ROW_INTEGER(wb_calibrate_settings, n_fibres, "fibres", 4, 1000, 20),
-     WB_ROW_OPTION("fibres", "N", "Fibres over the diameter"),
-     .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN |
-                WB_CALIBRATE_REPORT},
+     WB_ROW_OPTION("fibres", "N", "Fibres over the diameter"), .applies = WB_CALIBRATE_EVERYWHERE},
     {WB_ROW_NUMBER(wb_calibrate_settings, size_tolerance, "size_tolerance", 1e-12, 0.05, 1e-4),
      WB_ROW_OPTION("size-tolerance", "X",
                    "Stop when the simplex is smaller, in units of K0 and n0"),
@@ -146,19 +140,14 @@ bool wb_calibrate_is_complete(enum wb_calibrate_end end)
 
 const char *wb_calibrate_end_text(enum wb_calibrate_end end)
 {
-    switch (end) {
-    case WB_CALIBRATE_SIZE:
-        return "the simplex became small";
-    case WB_CALIBRATE_ERROR:
-        return "the error became small";
-    case WB_CALIBRATE_REFINED:
-        return "Gauss-Newton steps converged";
-    case WB_CALIBRATE_ITERATIONS:
-        return "the iterations ran out";
-    case WB_CALIBRATE_STOPPED:
-        return "stopped by the caller";
-    }
-    return "unknown";
+    static const char *const texts[] = {
+        [WB_CALIBRATE_SIZE] = "the simplex became small",
+        [WB_CALIBRATE_ERROR] = "the error became small",
+        [WB_CALIBRATE_REFINED] = "Gauss-Newton steps converged",
+        [WB_CALIBRATE_ITERATIONS] = "the iterations ran out",
+        [WB_CALIBRATE_STOPPED] = "stopped by the caller",
+    };
+    return texts[end];
 }
 
 static void silence_gsl(void)
@@ -253,21 +242,16 @@ static enum wb_status iterate(struct wb_calibrate_result *result, struct objecti
         if (objective->status != WB_OK)
             return objective->status;
         add_step(result, objective, best, error, size);
-        if (settings->progress &&
-            !settings->progress(settings->progress_context, objective->evaluations, error, size)) {
-            result->end = WB_CALIBRATE_STOPPED;
-            return WB_OK;
-        }
-        if (error < settings->error_tolerance) {
-            result->end = WB_CALIBRATE_ERROR;
-            return WB_OK;
-        }
-        if (size < settings->size_tolerance) {
-            result->end = WB_CALIBRATE_SIZE;
-            return WB_OK;
-        }
-        if (i >= settings->max_iterations) {
-            result->end = WB_CALIBRATE_ITERATIONS;
+        const bool is_stopped =
+            settings->progress &&
+            !settings->progress(settings->progress_context, objective->evaluations, error, size);
+        const bool is_small = error < settings->error_tolerance;
+        if (is_stopped || is_small || size < settings->size_tolerance ||
+            i >= settings->max_iterations) {
+            result->end = is_stopped                        ? WB_CALIBRATE_STOPPED
+                          : is_small                        ? WB_CALIBRATE_ERROR
+                          : size < settings->size_tolerance ? WB_CALIBRATE_SIZE
+                                                            : WB_CALIBRATE_ITERATIONS;
             return WB_OK;
         }
         /* GSL fails only for a contraction to a non-finite value, which evaluate() never

@@ -51,7 +51,9 @@ enum {
     WB_CALIBRATE_COMMAND = 1,  /* wirebench calibrate */
     WB_CALIBRATE_VALIDATE = 2, /* wirebench validate */
     WB_CALIBRATE_CAMPAIGN = 4, /* `settings` and `fit` of campaigns */
-    WB_CALIBRATE_REPORT = 8    /* `settings` of report.json */
+    WB_CALIBRATE_REPORT = 8,   /* `settings` of report.json */
+    WB_CALIBRATE_EVERYWHERE =
+        WB_CALIBRATE_COMMAND | WB_CALIBRATE_VALIDATE | WB_CALIBRATE_CAMPAIGN | WB_CALIBRATE_REPORT
 };
 extern const struct wb_setting_table wb_calibrate_table;
 

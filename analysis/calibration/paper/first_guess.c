@@ -37,16 +37,6 @@ double wb_first_guess_strain(double deflection, double length, double diameter)
     return 3.0 * diameter * deflection / (2.0 * length * length);
 }
 
-double wb_first_guess_hollomon(double modulus, double yield_stress, double exponent, double strain)
-{
-    return yield_stress * pow(modulus * strain / yield_stress, exponent);
-}
-
-double wb_first_guess_tangent(double modulus, double yield_stress, double exponent, double stress)
-{
-    return exponent * modulus * pow(stress / yield_stress, 1.0 - 1.0 / exponent);
-}
-
 double wb_first_guess_strength(double modulus, double yield_stress, double exponent)
 {
     /* Written so that E^n / sigma_Y^(n-1) does not overflow. */

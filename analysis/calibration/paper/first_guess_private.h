@@ -13,12 +13,6 @@ double wb_first_guess_stress(double force, double length, double diameter);
 /* Outer fibre's elastic strain at the clamp, eps = 3 d delta / (2 L^2). */
 double wb_first_guess_strain(double deflection, double length, double diameter);
 
-/* Eq. 13: Hollomon's stress at a strain beyond yield, Pa. */
-double wb_first_guess_hollomon(double modulus, double yield_stress, double exponent, double strain);
-
-/* Eq. 14: its tangent modulus at a stress beyond yield, Pa. */
-double wb_first_guess_tangent(double modulus, double yield_stress, double exponent, double stress);
-
 /* Eq. 16: K = E^n / sigma_Y^(n-1), Pa. */
 double wb_first_guess_strength(double modulus, double yield_stress, double exponent);
 
