@@ -129,8 +129,8 @@ static double curved_part(const struct readings *r, double mean, double slope)
 
 /* The line of one branch. */
 struct slope {
-    double value, error, misfit, curved;
-    double at_zero; /* m of travel, at zero force */
+    struct wb_fit_line line; /* m of travel over N */
+    double error, curved;
 };
 
 static enum wb_status find_slope(struct slope *slope, const struct readings *r,
@@ -152,9 +152,7 @@ static enum wb_status find_slope(struct slope *slope, const struct readings *r,
         signs += (off < 0.0) != (before < 0.0);
         spread += pow(r->force[i] - mean, 2);
     }
-    slope->value = line.slope;
-    slope->at_zero = line.value;
-    slope->misfit = line.residual;
+    slope->line = line;
     slope->error = line.residual * sqrt(fmax(1.0, 0.5 * r->n / signs) / spread);
     slope->curved = curved_part(r, mean, line.slope);
     return WB_OK;
@@ -202,9 +200,10 @@ static enum wb_status add_unloading(struct mean *mean, const struct test *test, 
         return WB_OK;
     WB_TRY(find_slope(&back, &test->back, model, most));
     const double least = test->up.force[0];
-    mean->back += back.value / n;
+    mean->back += back.line.slope / n;
     mean->back_error = hypot(mean->back_error, hypot(back.error, up->error) / n);
-    mean->residual += (back.at_zero - up->at_zero + (back.value - up->value) * least) / n;
+    mean->residual +=
+        (back.line.value - up->line.value + (back.line.slope - up->line.slope) * least) / n;
     return WB_OK;
 }
 
@@ -241,14 +240,14 @@ static enum wb_status find_mean(struct mean *mean, const struct test *all, int n
                              info->wire);
             break;
         }
-        sum += slope.value;
-        squares += slope.value * slope.value;
-        misfits += slope.misfit * slope.misfit;
+        sum += slope.line.slope;
+        squares += slope.line.slope * slope.line.slope;
+        misfits += slope.line.residual * slope.line.residual;
         mean->error = slope.error;
         mean->curved = fmax(mean->curved, slope.curved);
         mean->most_travel =
-            fmax(mean->most_travel,
-                 deflection_of(model, all[i].largest, 1.5 * most) + slope.value * all[i].largest);
+            fmax(mean->most_travel, deflection_of(model, all[i].largest, 1.5 * most) +
+                                        slope.line.slope * all[i].largest);
     }
     /* The run goes to 1.1 times the bar's deflection. */
     mean->strain = 0.5 * d * run.largest_curvature / 1.1;

@@ -112,9 +112,15 @@ static int series_of(const struct wb_three_point_calibration *c, int i)
     return i;
 }
 
-/* Mean and interval of the logarithms of `value` over members, with their own errors. */
-static void estimate(const struct wb_three_point_calibration *c, const double *value,
-                     const double *error, struct wb_estimate *out)
+/* Rigidity of a member (-1), or one of its moments. */
+static double value_of(const struct wb_three_point_member *m, int moment)
+{
+    return moment < 0 ? m->rigidity : m->moment[moment];
+}
+
+/* Mean and interval of the logarithms of a value over members, with their own errors. */
+static void estimate(const struct wb_three_point_calibration *c, int moment,
+                     struct wb_estimate *out)
 {
     double sum = 0.0, own = 0.0, squares = 0.0;
     int n = 0;
@@ -126,14 +132,14 @@ static void estimate(const struct wb_three_point_calibration *c, const double *v
         int count = 0;
         for (int k = i; k < c->n_members; k++) {
             if (k == i || (c->n_series > 1 && c->members[k].is_fitted && series_of(c, k) == i)) {
-                mean += log(value[k]);
+                mean += log(value_of(&c->members[k], moment));
                 count++;
             }
         }
         mean /= count;
         sum += mean;
         squares += mean * mean;
-        own = error[i];
+        own = moment < 0 ? c->members[i].rigidity_error : c->members[i].moment_error[moment];
         n++;
     }
     const double mean = sum / n;
@@ -145,22 +151,6 @@ static void estimate(const struct wb_three_point_calibration *c, const double *v
     out->low = exp(mean - half);
     out->high = exp(mean + half);
     out->candidates_low = out->candidates_high = out->value;
-}
-
-struct numbers {
-    double *value, *error; /* (n_members) */
-};
-
-static void find_estimates(struct wb_three_point_calibration *c, const struct numbers *w)
-{
-    for (int k = -1; k < WB_THREE_POINT_MOMENTS; k++) {
-        for (int i = 0; i < c->n_members; i++) {
-            w->value[i] = k < 0 ? c->members[i].rigidity : c->members[i].moment[k];
-            w->error[i] = k < 0 ? c->members[i].rigidity_error : c->members[i].moment_error[k];
-        }
-        estimate(c, w->value, w->error, k < 0 ? &c->rigidity : &c->moment[k]);
-    }
-    c->series_deviation = c->n_series > 1 ? c->rigidity.deviation : (double)NAN;
 }
 
 void wb_three_point_calibrate_law(const struct wb_three_point_calibration *c, int without,
@@ -384,9 +374,10 @@ static enum wb_status run(struct wb_three_point_calibration *c,
     }
     WB_TRY(fit_members(&work, why));
     wb_three_point_calibrate_law(c, -1, &c->law);
-    double *const room = wb_memory_new(2 * (size_t)c->n_members, sizeof *room);
-    find_estimates(c, &(struct numbers){room, room + c->n_members});
-    free(room);
+    estimate(c, -1, &c->rigidity);
+    for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++)
+        estimate(c, k, &c->moment[k]);
+    c->series_deviation = c->n_series > 1 ? c->rigidity.deviation : (double)NAN;
     WB_TRY(vary(&work, why));
     return wb_bending_ludwik(&c->law, datasets[0]->info.outer_diameter, c->largest_curvature,
                              &c->ludwik, &c->ludwik_misfit);
