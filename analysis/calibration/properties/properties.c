@@ -28,9 +28,14 @@ void wb_properties_make_unknown(struct wb_properties *properties)
 
 const char *const wb_properties_methods[] = {"cycle", "paper", "three-point", NULL};
 
-static void set_origin(struct wb_properties *properties, const struct wb_test_info *info,
-                       enum wb_properties_method method)
+/* Begins the properties of a wire that was calibrated on such tests. */
+static void begin(struct wb_properties *properties, const struct wb_test_info *info,
+                  enum wb_properties_method method)
 {
+    wb_properties_make_unknown(properties);
+    snprintf(properties->wire, sizeof properties->wire, "%s", info->wire);
+    properties->outer_diameter = info->outer_diameter;
+    properties->mass_per_length = info->mass_per_length;
     properties->is_virtual = info->is_virtual;
     properties->is_simulation = info->is_simulation;
     snprintf(properties->method, sizeof properties->method, "%s", wb_properties_methods[method]);
@@ -41,10 +46,7 @@ static void set_origin(struct wb_properties *properties, const struct wb_test_in
 void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties)
 {
-    wb_properties_make_unknown(properties);
-    snprintf(properties->wire, sizeof properties->wire, "%s", result->info.wire);
-    properties->outer_diameter = result->info.outer_diameter;
-    properties->mass_per_length = result->info.mass_per_length;
+    begin(properties, &result->info, WB_PROPERTIES_METHOD_PAPER);
     properties->material = result->material;
     memcpy(properties->deviation, result->deviation, sizeof properties->deviation);
     properties->calibration_length = result->info.length;
@@ -53,7 +55,6 @@ void wb_properties_from_result(const struct wb_calibrate_result *result,
     properties->residual_scatter_rms =
         result->n_samples > 1 ? result->residual_scatter_rms : (double)NAN;
     properties->n_samples = result->n_samples;
-    set_origin(properties, &result->info, WB_PROPERTIES_METHOD_PAPER);
     wb_law_init_ludwik(&properties->law, &result->material);
 }
 
@@ -84,12 +85,6 @@ static struct wb_cycle_stiffness known_stiffness(const struct wb_cycle_calibrati
     for (int k = 0; k < known_ones.n; k++)
         known_ones.estimate[k] = known(calibration, &stiffness->estimate[k]);
     return known_ones;
-}
-
-/* Tested by a complete unloading. */
-static bool is_rule_tested(const struct wb_cycle_calibration *calibration)
-{
-    return calibration->has_unloading && !calibration->is_stopped;
 }
 
 static void keep_specimen(const struct wb_cycle_calibration *calibration,
@@ -145,16 +140,11 @@ void wb_properties_find_deviation(struct wb_properties *properties)
 void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
                               struct wb_properties *properties)
 {
-    const struct wb_test_info *const info = &calibration->members[0].data.info;
-    wb_properties_make_unknown(properties);
-    snprintf(properties->wire, sizeof properties->wire, "%s", info->wire);
-    properties->outer_diameter = info->outer_diameter;
-    properties->mass_per_length = info->mass_per_length;
+    begin(properties, &calibration->members[0].data.info, WB_PROPERTIES_METHOD_CYCLE);
     properties->material = calibration->ludwik;
     properties->calibration_length = wb_cycle_calibrate_length(calibration);
     properties->rms = misfit_of_chosen(calibration);
     properties->n_samples = calibration->n_members;
-    set_origin(properties, info, WB_PROPERTIES_METHOD_CYCLE);
     properties->law = calibration->law;
     properties->ludwik_misfit = calibration->ludwik_misfit;
     properties->largest_curvature = calibration->largest_curvature;
@@ -167,7 +157,7 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
         properties->springback = known(calibration, &calibration->springback);
         properties->loop_energy = known(calibration, &calibration->loop_energy);
     }
-    properties->is_rule_tested = is_rule_tested(calibration);
+    properties->is_rule_tested = calibration->has_unloading && !calibration->is_stopped;
     properties->is_rule_supported = calibration->is_followed;
     properties->n_moments = WB_CYCLE_MOMENTS;
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++) {
@@ -181,33 +171,22 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
         keep_specimen(calibration, &calibration->members[i], &properties->specimens[i]);
 }
 
-/* All tests have an unloading, and the law fits loading and unloading. */
-static bool has_tested_rule(const struct wb_three_point_calibration *c)
-{
-    return c->is_rigidity_identifiable;
-}
-
 void wb_properties_from_three_point(const struct wb_three_point_calibration *c,
                                     struct wb_properties *properties)
 {
-    const struct wb_test_info *const info = &c->members[0].data.info;
-    wb_properties_make_unknown(properties);
-    snprintf(properties->wire, sizeof properties->wire, "%s", info->wire);
-    properties->outer_diameter = info->outer_diameter;
-    properties->mass_per_length = info->mass_per_length;
+    begin(properties, &c->members[0].data.info, WB_PROPERTIES_METHOD_THREE_POINT);
     properties->material = c->ludwik;
     properties->rms = c->misfit;
     properties->n_samples = c->n_fitted;
     properties->n_series = c->n_series;
-    set_origin(properties, info, WB_PROPERTIES_METHOD_THREE_POINT);
     properties->law = c->law;
     properties->ludwik_misfit = c->ludwik_misfit;
     properties->largest_curvature = c->largest_curvature;
     if (c->is_rigidity_identifiable)
         properties->rigidity = c->rigidity;
-    properties->is_rule_tested = has_tested_rule(c);
+    properties->is_rule_tested = c->is_rigidity_identifiable; /* all tests have an unloading */
     properties->is_rule_supported =
-        has_tested_rule(c) && c->misfit <= WB_THREE_POINT_LARGEST_SUPPORTED;
+        properties->is_rule_tested && c->misfit <= WB_THREE_POINT_LARGEST_SUPPORTED;
     properties->n_moments = WB_THREE_POINT_MOMENTS;
     for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         properties->curvature[k] = c->curvature[k];
