@@ -398,8 +398,7 @@ enum stage {
 struct work {
     struct wb_cycle_calibration *calibration;
     const struct wb_dataset *const *datasets;
-    const struct wb_cycle_calibrate_settings *settings;
-    struct wb_cycle_calibrate_settings with_elements;
+    struct wb_cycle_calibrate_settings settings;
     enum stage stage;
     int begin; /* first specimen of the present batch */
     struct wb_cycle_grid grid;
@@ -414,12 +413,12 @@ static enum wb_status fit_member(void *context, int index)
     const int i = work->begin + index;
     struct wb_cycle_member *const member = &work->calibration->members[i];
     const struct wb_cycle_member *const first = i > 0 ? work->calibration->members : NULL;
-    const struct fitting fitting = {member, &work->grid, work->settings};
+    const struct fitting fitting = {member, &work->grid, &work->settings};
     const double begin = wb_progress_thread_cpu();
     enum wb_status status = WB_OK;
     switch (work->stage) {
     case DATA:
-        status = wb_cycle_data_take(&member->data, work->datasets[i], &work->settings->data,
+        status = wb_cycle_data_take(&member->data, work->datasets[i], &work->settings.data,
                                     &member->why);
         break;
     case LUDWIKS:
@@ -443,7 +442,7 @@ static bool finish_member(void *context, int index, enum wb_status status)
 {
     struct work *const work = context;
     (void)index;
-    const struct wb_cycle_calibrate_settings *const s = work->settings;
+    const struct wb_cycle_calibrate_settings *const s = &work->settings;
     if (work->status == WB_OK)
         work->status = status;
     if (work->stage == DATA || work->stage == SHARED)
@@ -458,7 +457,7 @@ static void work_on(struct work *work, int begin, int end)
 {
     const struct wb_workers workers = {
         .n = work->stopped && work->stage != SHARED ? 0 : end - begin,
-        .n_threads = work->settings->threads,
+        .n_threads = work->settings.threads,
         .job = fit_member,
         .done = finish_member,
         .context = work,
@@ -1093,15 +1092,13 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
     struct work work = {
         .calibration = calibration,
         .datasets = datasets,
-        .settings = settings,
+        .settings = *settings,
         .all = (SHARED - LUDWIKS) * calibration->n_members,
         .status = WB_OK,
     };
     enum wb_status status = work_side_by_side(&work, DATA);
     if (status == WB_OK) {
-        work.with_elements = *settings;
-        work.with_elements.fit.n_maxwell = count_elements(calibration);
-        work.settings = &work.with_elements;
+        work.settings.fit.n_maxwell = count_elements(calibration);
         status = work_side_by_side(&work, LUDWIKS);
     }
     if (status != WB_OK)
@@ -1113,13 +1110,12 @@ static enum wb_status run(struct wb_cycle_calibration *calibration,
     calibration->has_unloading = all_have_unloading(calibration);
     work.grid = find_grid(calibration);
     int n_stages = calibration->has_unloading ? 2 : 1;
-    if (calibration->has_unloading && !work.stopped)
+    if (calibration->has_unloading)
         status = work_side_by_side(&work, PARALLELS);
     choose(calibration);
     if (status == WB_OK && calibration->has_unloading && chaboche_is_needed(calibration)) {
         n_stages = 3;
-        if (!work.stopped)
-            status = work_side_by_side(&work, CHABOCHES);
+        status = work_side_by_side(&work, CHABOCHES);
     }
     if (status != WB_OK)
         return report_failure(calibration, status, why);

@@ -358,19 +358,11 @@ static void take_places(struct wb_cycle_data *data, const struct wb_dataset *dat
         arc[n++] = row->s;
     }
     /* Frames after the time of the turn belong to the unloading. */
-    double turn = (double)INFINITY;
-    for (size_t i = 0; i < dataset->n_rows; i++) {
-        if (is_on_way(&dataset->rows[i], 1, true)) {
-            turn = dataset->rows[i].t;
-            break;
-        }
-    }
-    double end = (double)INFINITY;
-    for (size_t i = 0; i < dataset->n_rows; i++) {
-        if (dataset->rows[i].cycle > 1) {
-            end = dataset->rows[i].t;
-            break;
-        }
+    double turn = (double)INFINITY, end = (double)INFINITY;
+    for (size_t i = dataset->n_rows; i-- > 0;) {
+        const struct wb_row *const row = &dataset->rows[i];
+        turn = is_on_way(row, 1, true) ? row->t : turn;
+        end = row->cycle > 1 ? row->t : end;
     }
     double next = 0.0;
     for (int p = 0; p < data->n_points; p++) {
