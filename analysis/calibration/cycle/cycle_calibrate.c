@@ -11,7 +11,6 @@
 #include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/calibration/cycle/cycle_hold.h"
 #include "analysis/calibration/paper/first_guess.h"
-#include "analysis/calibration/paper/first_guess_private.h"
 #include "base/memory.h"
 #include "base/progress.h"
 #include "base/units.h"

@@ -11,7 +11,6 @@
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_multifit_nlinear.h>
 
-#include "analysis/calibration/cycle/cycle_covariance.h"
 #include "analysis/calibration/cycle/cycle_model.h"
 #include "analysis/calibration/cycle/cycle_parameters.h"
 #include "analysis/dataset/fit.h"
@@ -40,6 +39,8 @@ static const double settled_sum = 1e-4;
 /* Weight of the prior that keeps an undetermined parameter finite, in units of the free parameters.
  */
 static const double know_nothing = 1e-6;
+/* Square of the least standard error, in the same units. */
+static const double surest = 1e-12;
 /* Step of a moved law in standard errors, and the largest change of a parameter, which limits it to
  * the range where the linearised errors hold. */
 static const double moved_by = 0.01, farthest = 1.0;
@@ -319,6 +320,131 @@ static bool iterate(struct wb_cycle_search *p, gsl_multifit_nlinear_workspace *w
     return wb_least_squares_iterate(w, &search, iterations) && !p->lacks_slopes;
 }
 
+/* --- covariance ---
+ *
+ * The readings contribute by the jackknife (Tukey 1958), which leaves out each group of residuals
+ * once; the priors contribute by their standard deviations. If the form of the law cannot describe
+ * the test, neighbouring residuals are large and of one sign, and the parameters that depend on
+ * them are uncertain, others are not. Parameters that the readings do not determine, such as the
+ * virgin curve below the curvature of the wire at zero deflection, depend on the priors. For pure
+ * noise, groups by sign overestimate a standard error by half.
+ */
+
+/* Lower half of J'J with the prior that keeps undetermined parameters finite. */
+static gsl_matrix *squares_of(const gsl_matrix *J)
+{
+    gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(J->size2, J->size2));
+    gsl_matrix_set_identity(squares);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, squares);
+    return squares;
+}
+
+/* Its Cholesky factor; NULL: not positive definite. */
+static gsl_matrix *factor_squares(const gsl_matrix *J)
+{
+    gsl_matrix *const squares = squares_of(J);
+    if (gsl_linalg_cholesky_decomp1(squares) == GSL_SUCCESS)
+        return squares;
+    gsl_matrix_free(squares);
+    return NULL;
+}
+
+enum {
+    IS_PRIOR = -1 /* residual that belongs to no group */
+};
+
+/* Begins a new group of residuals at each change of sign. Returns the index after the last one. */
+static int group_rows(const gsl_vector *f, int at, int n, int *group, int *n_groups)
+{
+    for (int i = at; i < at + n; i++) {
+        *n_groups += i == at || (gsl_vector_get(f, (size_t)i) < 0.0) !=
+                                    (gsl_vector_get(f, (size_t)i - 1) < 0.0);
+        group[i] = *n_groups - 1;
+    }
+    return at + n;
+}
+
+/* Groups correlated residuals: consecutive ones of one sign, of one branch, one marker or the
+ * dwell. Returns the number of groups. */
+static int group_residuals(const struct wb_cycle_data *data, bool has_held, const gsl_vector *f,
+                           int *group)
+{
+    int n_groups = 0;
+    for (size_t i = 0; i < f->size; i++)
+        group[i] = IS_PRIOR;
+    int at = group_rows(f, 0, data->n_loading, group, &n_groups);
+    at = group_rows(f, at, data->n_points - data->n_loading, group, &n_groups);
+    for (int m = 0; m < data->n_markers; m++) {
+        int n = 0;
+        for (int i = 0; i < data->n_places; i++)
+            n += data->places[i].marker == m;
+        at = group_rows(f, at, n, group, &n_groups) + 1; /* after the prior of its offset */
+    }
+    if (has_held)
+        group_rows(f, at, data->n_held, group, &n_groups);
+    return n_groups;
+}
+
+/* Adds the contribution of one group of residuals to the covariance: the change of the free
+ * parameters, to first order, when the group is left out. `squares` is J'J; `rest` is workspace. */
+static bool add_group(const gsl_matrix *J, const gsl_vector *f, const int *group, int left_out,
+                      const gsl_matrix *squares, gsl_matrix *rest, gsl_matrix *covariance)
+{
+    double numbers[WB_FIT_MOST_FREE] = {0.0};
+    gsl_vector_view change = gsl_vector_view_array(numbers, J->size2);
+    gsl_matrix_memcpy(rest, squares);
+    for (size_t i = 0; i < J->size1; i++) {
+        if (group[i] != left_out)
+            continue;
+        const gsl_vector_const_view slopes = gsl_matrix_const_row(J, i);
+        gsl_blas_dsyr(CblasLower, -1.0, &slopes.vector, rest);
+        gsl_blas_daxpy(gsl_vector_get(f, i), &slopes.vector, &change.vector);
+    }
+    return gsl_linalg_cholesky_decomp1(rest) == GSL_SUCCESS &&
+           gsl_linalg_cholesky_svx(rest, &change.vector) == GSL_SUCCESS &&
+           gsl_blas_dsyr(CblasLower, 1.0, &change.vector, covariance) == GSL_SUCCESS;
+}
+
+/* Adds the contribution of the priors, by their standard deviations. */
+static bool add_priors(const gsl_matrix *J, const int *group, const gsl_matrix *squares,
+                       gsl_matrix *rest, gsl_matrix *covariance)
+{
+    gsl_matrix_memcpy(rest, squares);
+    bool good = gsl_linalg_cholesky_decomp1(rest) == GSL_SUCCESS;
+    for (size_t i = 0; i < J->size1 && good; i++) {
+        double numbers[WB_FIT_MOST_FREE];
+        gsl_vector_view change = gsl_vector_view_array(numbers, J->size2);
+        if (group[i] != IS_PRIOR)
+            continue;
+        gsl_matrix_get_row(&change.vector, J, i);
+        good = gsl_linalg_cholesky_svx(rest, &change.vector) == GSL_SUCCESS &&
+               gsl_blas_dsyr(CblasLower, 1.0, &change.vector, covariance) == GSL_SUCCESS;
+    }
+    return good;
+}
+
+/* Fills the lower half of the covariance of the free parameters. `f` are the residuals at the end
+ * of the search, `J` is their Jacobian. False if it cannot be computed. */
+static bool find_covariance(const struct wb_cycle_data *data, bool has_held, const gsl_vector *f,
+                            const gsl_matrix *J, gsl_matrix *covariance)
+{
+    const size_t n = J->size2;
+    gsl_matrix *const squares = squares_of(J);
+    gsl_matrix *const rest = wb_memory_need(gsl_matrix_alloc(n, n));
+    int *const group = wb_memory_new(f->size, sizeof *group);
+    const int n_groups = group_residuals(data, has_held, f, group);
+    bool good = true;
+    gsl_matrix_set_identity(covariance);
+    gsl_matrix_scale(covariance, surest);
+    for (int g = 0; g < n_groups && good; g++)
+        good = add_group(J, f, group, g, squares, rest, covariance);
+    good = good && add_priors(J, group, squares, rest, covariance);
+    gsl_matrix_free(squares);
+    gsl_matrix_free(rest);
+    free(group);
+    return good;
+}
+
 /* Moves the law along the columns of the triangular factor of the covariance, which is overwritten.
  */
 static void move_law(const struct wb_cycle_search *p, const gsl_vector *x, gsl_matrix *covariance,
@@ -371,7 +497,7 @@ static void find_errors(const struct wb_cycle_search *p, gsl_multifit_nlinear_wo
         fit->level_error = sqrt(variance * both / fit->level_share);
         wb_cycle_parameters_correlate(&p->parameters, covariance, variance, fit);
     }
-    if (wb_cycle_covariance_find(p->parameters.data, held_of(p) > 0, w->f, w->J, covariance))
+    if (find_covariance(p->parameters.data, held_of(p) > 0, w->f, w->J, covariance))
         move_law(p, w->x, covariance, fit);
     gsl_matrix_free(covariance);
 }
@@ -416,18 +542,6 @@ static struct wb_law_maxwell unseen_element(const struct wb_cycle_search *p,
     const double strain = 0.5 * p->parameters.data->info.outer_diameter * p->run.clamp_curvature;
     const double secant = wb_law_virgin_stress(law, strain, NULL) / strain;
     return (struct wb_law_maxwell){part * secant * x / -expm1(-x), unseen_time * loading};
-}
-
-/* Cholesky factor of J'J; NULL: not positive definite. */
-static gsl_matrix *factor_squares(const gsl_matrix *J)
-{
-    gsl_matrix *const squares = wb_memory_need(gsl_matrix_alloc(J->size2, J->size2));
-    gsl_matrix_set_identity(squares);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1.0, J, know_nothing, squares);
-    if (gsl_linalg_cholesky_decomp1(squares) == GSL_SUCCESS)
-        return squares;
-    gsl_matrix_free(squares);
-    return NULL;
 }
 
 /* Gauss-Newton step from the end of the search, with the residuals of altered data. `squares` is

@@ -10,13 +10,13 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multimin.h>
 
-#include "analysis/calibration/paper/bow_correction.h"
 #include "analysis/calibration/paper/calibrate_private.h"
 #include "analysis/calibration/paper/computed.h"
 #include "analysis/calibration/paper/first_guess.h"
 #include "analysis/calibration/paper/jackknife.h"
 #include "analysis/calibration/paper/refit.h"
 #include "analysis/calibration/paper/scatter.h"
+#include "analysis/dataset/curve.h"
 #include "analysis/dataset/errors.h"
 #include "base/memory.h"
 #include "base/progress.h"
@@ -423,6 +423,69 @@ static enum wb_status optimise(struct wb_calibrate_result *result, struct object
     return WB_OK;
 }
 
+/* --- effect of bows ---
+ *
+ * Eqs. 10 and 11 assume a straight wire; for a sample with a bow their modulus and yield stress are
+ * biased. The bias is found by applying them to curves that are computed for the same samples with
+ * a known material.
+ */
+
+struct samples {
+    const struct wb_dataset *const *datasets; /* (n) */
+    int n;
+    const struct wb_curve *curve; /* their average, whose grid is used */
+    const struct wb_calibrate_settings *settings;
+    const struct wb_computed_settings *how;
+};
+
+/* Adds 1/n of a sample's computed curve to `mean`. */
+static enum wb_status add_sample(double *mean, double *value, const struct samples *samples,
+                                 const struct wb_test_info *info,
+                                 const struct wb_material *material, struct wb_reason *why)
+{
+    const struct wb_curve *const curve = samples->curve;
+    struct wb_computed *computed;
+    int reached = 0;
+    WB_TRY(wb_computed_create(&computed, info, material, samples->how));
+    enum wb_status status =
+        wb_computed_curve(computed, material, curve->n, curve->step, value, &reached);
+    wb_computed_destroy(computed);
+    if (status == WB_OK && reached < curve->n)
+        status = wb_fail_to(why, WB_ERR_CONVERGENCE,
+                            "wire '%s', sample %d: the beam converges only up to %.3g of the "
+                            "curve, so the effect of its bow on E cannot be determined",
+                            info->wire, info->sample, (double)reached / curve->n);
+    for (int i = 0; status == WB_OK && i < curve->n; i++)
+        mean[i] += value[i] / samples->n;
+    return status;
+}
+
+/* Applies eqs. 10 and 11 to the mean of the curves computed with `material` for the samples, each
+ * with its own natural shape. The bows change E by the ratio of this modulus to the material's, and
+ * sigma_Y likewise. *evaluations is increased by the number of beam runs. */
+static enum wb_status guess_of_computed(struct wb_first_guess *guess, const struct samples *samples,
+                                        const struct wb_material *material, int *evaluations,
+                                        struct wb_reason *why)
+{
+    const size_t points = (size_t)samples->curve->n;
+    double *const mean = wb_memory_new(2 * points, sizeof *mean);
+    enum wb_status status = WB_OK;
+    for (int i = 0; status == WB_OK && i < samples->n; i++) {
+        status =
+            add_sample(mean, mean + points, samples, &samples->datasets[i]->info, material, why);
+        ++*evaluations;
+    }
+    if (status == WB_OK) {
+        struct wb_curve computed = *samples->curve;
+        computed.value = mean;
+        status = wb_first_guess_run(guess, &computed, &samples->datasets[0]->info,
+                                    samples->settings->elastic_zone, yield_point(samples->settings),
+                                    why);
+    }
+    free(mean);
+    return status;
+}
+
 /* Multiplies E and sigma_Y, unless given, by the ratio of two closed forms. */
 static void scale_closed_forms(struct wb_material *material, const struct wb_first_guess *measured,
                                const struct wb_first_guess *computed,
@@ -437,16 +500,15 @@ static void scale_closed_forms(struct wb_material *material, const struct wb_fir
 /* Removes the bias of eqs. 10 and 11 by the bows from E and sigma_Y, by the ratio of measured to
  * computed values, and fits K and n again from their current values. */
 static enum wb_status correct_for_bows(struct wb_calibrate_result *result,
-                                       struct objective *objective,
-                                       const struct wb_bow_samples *samples,
-                                       const struct wb_first_guess *measured,
-                                       const struct wb_calibrate_settings *settings)
+                                       struct objective *objective, const struct samples *samples,
+                                       const struct wb_first_guess *measured)
 {
+    const struct wb_calibrate_settings *const settings = samples->settings;
     for (int pass = 0; pass < BOW_PASSES && result->end != WB_CALIBRATE_STOPPED; pass++) {
         struct wb_first_guess computed;
         double at[2] = {1.0, 1.0};
-        WB_TRY(wb_bow_correction_guess(&computed, samples, &result->material,
-                                       &objective->evaluations, objective->why));
+        WB_TRY(guess_of_computed(&computed, samples, &result->material, &objective->evaluations,
+                                 objective->why));
         objective->material = result->material;
         scale_closed_forms(&objective->material, measured, &computed, settings);
         objective->first_strength = result->material.strength_coefficient;
@@ -521,6 +583,7 @@ int wb_calibrate_remarks(const struct wb_calibrate_result *result,
 
 /* --- uncertainties --- */
 
+/* What the jackknife passes on. */
 struct leaving_out {
     const struct wb_calibrate_settings *settings;
     int *evaluations;
@@ -528,26 +591,24 @@ struct leaving_out {
 
 /* E and sigma_Y from eqs. 10 and 11 of the samples' own curve; K and n are fitted starting from
  * those of `material`. */
-static enum wb_status refit_curve(const struct leaving_out *how,
-                                  const struct wb_bow_samples *samples,
-                                  struct wb_material *material, bool *converged,
-                                  struct wb_reason *why)
+static enum wb_status refit_curve(const struct samples *samples, struct wb_material *material,
+                                  bool *converged, int *evaluations, struct wb_reason *why)
 {
-    const struct wb_calibrate_settings *const settings = how->settings;
+    const struct wb_calibrate_settings *const settings = samples->settings;
     struct wb_computed *computed;
     struct wb_test_info info;
     struct wb_first_guess guess;
     wb_curve_mean_info(samples->datasets, samples->n, &info);
-    WB_TRY(wb_first_guess_run(&guess, samples->curve, &info, samples->elastic_zone,
-                              samples->yield_point, why));
+    WB_TRY(wb_first_guess_run(&guess, samples->curve, &info, settings->elastic_zone,
+                              yield_point(settings), why));
     struct wb_first_guess before = {.youngs_modulus = material->youngs_modulus,
                                     .yield_stress = material->yield_stress};
     if (settings->bow_corrected && !settings->straight)
-        WB_TRY(wb_bow_correction_guess(&before, samples, material, how->evaluations, why));
+        WB_TRY(guess_of_computed(&before, samples, material, evaluations, why));
     scale_closed_forms(material, &guess, &before, settings);
     WB_TRY(wb_computed_create(&computed, &info, material, samples->how));
     const enum wb_status status =
-        wb_refit_run(material, converged, computed, samples->curve, how->evaluations);
+        wb_refit_run(material, converged, computed, samples->curve, evaluations);
     wb_computed_destroy(computed);
     return status;
 }
@@ -562,9 +623,8 @@ static enum wb_status refit_samples(void *context, const struct wb_dataset *cons
     struct wb_curve curve;
     *converged = false;
     WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid, why));
-    const struct wb_bow_samples samples = {
-        datasets, n, &curve, how->settings->elastic_zone, yield_point(how->settings), &computed};
-    const enum wb_status status = refit_curve(how, &samples, material, converged, why);
+    const struct samples samples = {datasets, n, &curve, how->settings, &computed};
+    const enum wb_status status = refit_curve(&samples, material, converged, how->evaluations, why);
     wb_curve_release(&curve);
     return status;
 }
@@ -620,9 +680,8 @@ static enum wb_status calibrate_curve(struct wb_calibrate_result *result,
     if (status == WB_OK)
         status = optimise(result, &objective, settings);
     if (status == WB_OK && settings->bow_corrected && !settings->straight) {
-        const struct wb_bow_samples samples = {
-            datasets, n, curve, settings->elastic_zone, yield_point(settings), &how};
-        status = correct_for_bows(result, &objective, &samples, &guess, settings);
+        const struct samples samples = {datasets, n, curve, settings, &how};
+        status = correct_for_bows(result, &objective, &samples, &guess);
     }
     if (status == WB_OK)
         status = compute_errors(result, &objective);

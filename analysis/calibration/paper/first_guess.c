@@ -2,7 +2,6 @@
 
 #include <math.h>
 
-#include "analysis/calibration/paper/first_guess_private.h"
 #include "base/circle.h"
 #include "base/units.h"
 

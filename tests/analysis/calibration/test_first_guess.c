@@ -1,6 +1,6 @@
 #include "tests/analysis/beam_data.h"
 
-#include "analysis/calibration/paper/first_guess_private.h"
+#include "analysis/calibration/paper/first_guess.h"
 
 static const double mm = WB_MM, mpa = WB_MPA;
 
