@@ -11,7 +11,6 @@
 #define WB_ANALYSIS_CALIBRATION_CONSTITUENTS_LAYERS_H
 
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "base/reason.h"
 #include "base/setting.h"

@@ -7,7 +7,6 @@
 
 #include "base/config.h"
 #include "base/memory.h"
-#include "base/units.h"
 
 #define WB_LOG_DOMAIN "tensile"
 

@@ -5,7 +5,6 @@
 
 #include "base/config.h"
 #include "base/file.h"
-#include "base/number.h"
 #include "base/text.h"
 #include "base/units.h"
 

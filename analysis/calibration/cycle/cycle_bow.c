@@ -4,8 +4,6 @@
 
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "cycle"
-
 enum {
     MOST_DOUBLINGS = 5,
     HALVINGS = 20

@@ -7,8 +7,6 @@
 
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "calibrate"
-
 static const double coverage = 0.95;
 /* Width of a candidate's range on either side, in standard errors of its fit. */
 static const double range_errors = 2.0;

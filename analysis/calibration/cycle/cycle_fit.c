@@ -16,7 +16,6 @@
 #include "analysis/dataset/fit.h"
 #include "analysis/dataset/least_squares.h"
 #include "base/memory.h"
-#include "base/units.h"
 
 #define WB_LOG_DOMAIN "cycle"
 

@@ -1,4 +1,3 @@
-#include <stddef.h>
 
 #include "analysis/calibration/cycle/cycle_fit.h"
 #include "base/units.h"

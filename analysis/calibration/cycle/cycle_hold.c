@@ -4,9 +4,6 @@
 #include <stdlib.h>
 
 #include "analysis/dataset/stops.h"
-#include "base/units.h"
-
-#define WB_LOG_DOMAIN "cycle"
 
 /* Least fall that counts as relaxation, in standard errors and as a part of the largest force. */
 static const double seen_errors = 4.0, seen_share = 1e-3;

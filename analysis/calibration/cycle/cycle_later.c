@@ -9,8 +9,6 @@
 #include "base/memory.h"
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "cycle"
-
 /* Step between the compared deflections; below this tension the strand is nearly slack. */
 static const double step = 1.0 * WB_MM, smallest_tension = 2.5e-3;
 

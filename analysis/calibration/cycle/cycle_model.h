@@ -13,7 +13,6 @@
 #include <stdbool.h>
 
 #include "analysis/calibration/cycle/cycle_data.h"
-#include "base/reason.h"
 #include "base/status.h"
 #include "fe/material/law.h"
 

@@ -8,8 +8,6 @@
 #include "analysis/dataset/least_squares.h"
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "cycle"
-
 /* Largest exponents. */
 static const double largest_exponent = 1.5;           /* isotropic */
 static const double largest_kinematic_exponent = 1.0; /* a larger exponent would generate work */

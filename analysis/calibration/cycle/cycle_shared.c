@@ -3,8 +3,6 @@
 #include "base/memory.h"
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "calibrate"
-
 static const struct shared {
     const char *name, *key;
     double change;

@@ -9,7 +9,6 @@
 #define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_VALLEY_H
 
 #include "analysis/calibration/cycle/cycle_data.h"
-#include "analysis/calibration/law/bending.h"
 #include "base/reason.h"
 #include "base/status.h"
 #include "fe/material/law.h"

@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-#define WB_LOG_DOMAIN "calibrate"
-
 static int count_doubts(const struct wb_cycle_remarks *remarks)
 {
     int n = 0;

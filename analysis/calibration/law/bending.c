@@ -2,18 +2,14 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <gsl/gsl_errno.h>
-#include <gsl/gsl_matrix.h>
 #include <gsl/gsl_multifit_nlinear.h>
 #include <gsl/gsl_vector.h>
 
 #include "base/memory.h"
 #include "fe/rod/fibres.h"
 #include "fe/rod/section.h"
-
-#define WB_LOG_DOMAIN "bending"
 
 enum {
     STRIPS = 100,

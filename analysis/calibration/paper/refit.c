@@ -7,8 +7,6 @@
 #include "analysis/dataset/errors.h"
 #include "base/memory.h"
 
-#define WB_LOG_DOMAIN "calibrate"
-
 /* Step of ln K and of n in finite differences. */
 #define SLOPE_STEP 0.01
 /* Convergence: the step of ln K and n is below the first limit, or the expected relative decrease

@@ -5,8 +5,6 @@
 
 #include "base/memory.h"
 
-#define WB_LOG_DOMAIN "scatter"
-
 /* Measured less computed values of one sample on the grid of the average. */
 static enum wb_status sample_difference(double *difference, bool *complete,
                                         const struct wb_dataset *dataset,

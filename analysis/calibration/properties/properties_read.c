@@ -7,11 +7,8 @@
 #include "analysis/calibration/properties/quantity.h"
 #include "base/config.h"
 #include "base/file.h"
-#include "base/hash.h"
 #include "base/units.h"
 #include "fe/material/law_file.h"
-
-#define WB_LOG_DOMAIN "properties"
 
 /* Limits of the file's values, in its units. */
 #define LARGEST_MPA 1e7

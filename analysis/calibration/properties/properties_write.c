@@ -1,10 +1,8 @@
 /* Properties as the text of a file. */
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "analysis/calibration/cycle/cycle_budget.h"
-#include "analysis/calibration/properties/properties_private.h"
+#include "analysis/calibration/properties/properties.h"
 #include "analysis/calibration/properties/quantity.h"
 #include "base/config.h"
 #include "base/file.h"

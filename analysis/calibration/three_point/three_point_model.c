@@ -9,8 +9,6 @@
 #include "base/memory.h"
 #include "fe/rod/section.h"
 
-#define WB_LOG_DOMAIN "three-point"
-
 enum {
     STEPS = 36, /* most steps of the loading, */
     BACK = 24   /* and of the unloading */
