@@ -15,11 +15,9 @@ struct wb_computed {
     struct wb_section section;
     struct wb_cantilever *cantilever;
     double zero;  /* N, vertical force at zero deflection; 0 of a follower test */
-    double speed; /* m/s; 0: infinitely slow */
     double at;    /* m: deflection of the last move */
     double begin; /* first value of a curve: zero force, or a follower test's deflection, m */
-    struct wb_reason *why;
-    const struct wb_law *law; /* NULL: the runs' materials */
+    struct wb_computed_settings settings;
 };
 
 enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test_info *info,
@@ -29,7 +27,7 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
     *out = NULL;
     struct wb_computed *const computed = wb_memory_new(1, sizeof *computed);
     computed->info = *info;
-    computed->why = settings->why;
+    computed->settings = *settings;
     if (info->is_follower && info->strand_length != 0.0) {
         wb_computed_destroy(computed);
         return wb_fail_to(
@@ -37,8 +35,6 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
             "wire '%s': the test has a follower force and a strand: expected one of them",
             info->wire);
     }
-    computed->law = settings->law;
-    computed->speed = settings->speed;
     enum wb_status status = settings->law
                                 ? wb_section_init_law(&computed->section, info->outer_diameter,
                                                       settings->law, settings->n_fibres)
@@ -71,7 +67,7 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
 
 struct wb_reason *wb_computed_reason(const struct wb_computed *computed)
 {
-    return computed->why;
+    return computed->settings.why;
 }
 
 void wb_computed_destroy(struct wb_computed *computed)
@@ -102,8 +98,8 @@ enum wb_status wb_computed_start(struct wb_computed *computed, const struct wb_m
     struct wb_cantilever_point point;
     double force;
     wb_cantilever_reset(computed->cantilever);
-    if (computed->law)
-        WB_TRY(wb_cantilever_set_law(computed->cantilever, computed->law));
+    if (computed->settings.law)
+        WB_TRY(wb_cantilever_set_law(computed->cantilever, computed->settings.law));
     else
         wb_cantilever_set_materials(computed->cantilever, material);
     wb_cantilever_set_duration(computed->cantilever, (double)INFINITY);
@@ -112,7 +108,7 @@ enum wb_status wb_computed_start(struct wb_computed *computed, const struct wb_m
     computed->at = 0.0;
     if (*reached && point.slack)
         return wb_fail_to(
-            computed->why, WB_ERR_DATA,
+            computed->settings.why, WB_ERR_DATA,
             "wire '%s', sample %d: with its bow of %.2f mm the computed wire carries the "
             "counterweight above zero deflection, where the strand is slack: the force has no zero",
             computed->info.wire, computed->info.sample, wb_dataset_bow(&computed->info) / WB_MM);
@@ -126,9 +122,9 @@ enum wb_status wb_computed_move(struct wb_computed *computed, double deflection,
 {
     struct wb_cantilever_point point;
     double found;
-    if (computed->speed > 0.0)
+    if (computed->settings.speed > 0.0)
         wb_cantilever_set_duration(computed->cantilever,
-                                   fabs(deflection - computed->at) / computed->speed);
+                                   fabs(deflection - computed->at) / computed->settings.speed);
     computed->at = deflection;
     WB_TRY(move(computed,
                 computed->info.is_follower ? WB_CONTROL_FOLLOWER_DEFLECTION : WB_CONTROL_DEFLECTION,
@@ -144,7 +140,7 @@ enum wb_status wb_computed_push(struct wb_computed *computed, double force, doub
     struct wb_cantilever_point point;
     double given;
     if (!computed->info.is_follower)
-        return wb_fail_to(computed->why, WB_ERR_ARGUMENT,
+        return wb_fail_to(computed->settings.why, WB_ERR_ARGUMENT,
                           "wire '%s': the test has no follower force: expected one",
                           computed->info.wire);
     WB_TRY(move(computed, WB_CONTROL_FOLLOWER_FORCE, force, &point, &given, reached));

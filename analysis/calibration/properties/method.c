@@ -2,10 +2,11 @@
 
 #define WB_LOG_DOMAIN "calibrate"
 
+const char *const wb_method_names[WB_METHODS + 1] = {"cycle", "paper", "three-point", NULL};
+
 const char *wb_method_name(enum wb_method method)
 {
-    static const char *const names[WB_METHODS] = {"cycle", "paper", "three-point"};
-    return names[method];
+    return wb_method_names[method];
 }
 
 enum wb_status wb_method_choose(enum wb_method *method, const struct wb_dataset *const *datasets,

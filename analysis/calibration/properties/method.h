@@ -13,7 +13,8 @@ enum wb_method {
     WB_METHODS
 };
 
-/* "cycle", "paper", "three-point". */
+/* "cycle", "paper", "three-point"; NULL-terminated. */
+extern const char *const wb_method_names[WB_METHODS + 1];
 const char *wb_method_name(enum wb_method method);
 
 /* Chooses the method: datasets of three-point bending have only one, cantilever tests with a

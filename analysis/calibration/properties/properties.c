@@ -6,6 +6,7 @@
 
 #include <gsl/gsl_cdf.h>
 
+#include "analysis/calibration/properties/method.h"
 #include "base/version.h"
 
 const struct wb_estimate wb_properties_unknown_estimate = {(double)NAN, (double)NAN, (double)NAN,
@@ -26,11 +27,9 @@ void wb_properties_make_unknown(struct wb_properties *properties)
         properties->moment[k] = wb_properties_unknown_estimate;
 }
 
-const char *const wb_properties_methods[] = {"cycle", "paper", "three-point", NULL};
-
 /* Begins the properties of a wire that was calibrated on such tests. */
 static void begin(struct wb_properties *properties, const struct wb_test_info *info,
-                  enum wb_properties_method method)
+                  enum wb_method method)
 {
     wb_properties_make_unknown(properties);
     snprintf(properties->wire, sizeof properties->wire, "%s", info->wire);
@@ -38,7 +37,7 @@ static void begin(struct wb_properties *properties, const struct wb_test_info *i
     properties->mass_per_length = info->mass_per_length;
     properties->is_virtual = info->is_virtual;
     properties->is_simulation = info->is_simulation;
-    snprintf(properties->method, sizeof properties->method, "%s", wb_properties_methods[method]);
+    snprintf(properties->method, sizeof properties->method, "%s", wb_method_name(method));
     snprintf(properties->tool, sizeof properties->tool, "wirebench %s (%s)", wb_version(),
              wb_version_revision());
 }
@@ -46,7 +45,7 @@ static void begin(struct wb_properties *properties, const struct wb_test_info *i
 void wb_properties_from_result(const struct wb_calibrate_result *result,
                                struct wb_properties *properties)
 {
-    begin(properties, &result->info, WB_PROPERTIES_METHOD_PAPER);
+    begin(properties, &result->info, WB_METHOD_PAPER);
     properties->material = result->material;
     memcpy(properties->deviation, result->deviation, sizeof properties->deviation);
     properties->calibration_length = result->info.length;
@@ -140,7 +139,7 @@ void wb_properties_find_deviation(struct wb_properties *properties)
 void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
                               struct wb_properties *properties)
 {
-    begin(properties, &calibration->members[0].data.info, WB_PROPERTIES_METHOD_CYCLE);
+    begin(properties, &calibration->members[0].data.info, WB_METHOD_CYCLE);
     properties->material = calibration->ludwik;
     properties->calibration_length = wb_cycle_calibrate_length(calibration);
     properties->rms = misfit_of_chosen(calibration);
@@ -174,7 +173,7 @@ void wb_properties_from_cycle(const struct wb_cycle_calibration *calibration,
 void wb_properties_from_three_point(const struct wb_three_point_calibration *c,
                                     struct wb_properties *properties)
 {
-    begin(properties, &c->members[0].data.info, WB_PROPERTIES_METHOD_THREE_POINT);
+    begin(properties, &c->members[0].data.info, WB_METHOD_THREE_POINT);
     properties->material = c->ludwik;
     properties->rms = c->misfit;
     properties->n_samples = c->n_fitted;

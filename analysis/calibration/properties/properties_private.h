@@ -4,14 +4,6 @@
 
 #include "analysis/calibration/properties/properties.h"
 
-enum wb_properties_method {
-    WB_PROPERTIES_METHOD_CYCLE,
-    WB_PROPERTIES_METHOD_PAPER,
-    WB_PROPERTIES_METHOD_THREE_POINT
-};
-/* Names in the key `method`, NULL-terminated. */
-extern const char *const wb_properties_methods[];
-
 extern const struct wb_estimate wb_properties_unknown_estimate;
 
 /* Sets all members that a source of properties may lack to unknown. */

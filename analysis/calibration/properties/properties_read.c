@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/calibration/properties/method.h"
 #include "analysis/calibration/properties/properties_private.h"
 #include "analysis/calibration/properties/quantity.h"
 #include "base/config.h"
@@ -243,7 +244,7 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
         WB_CONFIG_NUMBER("poissons_ratio", &material->poissons_ratio, 1.0, -0.99, 0.5),
         WB_CONFIG_OPTIONAL_NODE("deviations", &deviations),
         WB_CONFIG_OPTIONAL_NODE("calibration", &calibration),
-        WB_CONFIG_OPTIONAL_CHOICE("method", &method, wb_properties_methods),
+        WB_CONFIG_OPTIONAL_CHOICE("method", &method, wb_method_names),
         WB_CONFIG_OPTIONAL_NODE("law", &law),
         WB_CONFIG_OPTIONAL_NUMBER("ludwik_misfit", &properties->ludwik_misfit, 1.0, 0.0, 1e6),
         WB_CONFIG_OPTIONAL_NODE("springback_ratio", &old_ratio),
@@ -265,10 +266,9 @@ static enum wb_status read_root(const struct wb_config_node *root, struct wb_pro
     material->hardening = WB_HARDENING_ISOTROPIC_POWER;
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
     if (method < 0 && calibration)
-        method = WB_PROPERTIES_METHOD_PAPER; /* which does not write the key */
+        method = WB_METHOD_PAPER; /* which does not write the key */
     if (method >= 0)
-        snprintf(properties->method, sizeof properties->method, "%s",
-                 wb_properties_methods[method]);
+        snprintf(properties->method, sizeof properties->method, "%s", wb_method_names[method]);
     if (deviations)
         WB_TRY(read_deviations(deviations, properties->deviation));
     if (calibration)
