@@ -49,12 +49,11 @@ enum wb_status wb_cycle_model_create(struct wb_cycle_model **out, const struct w
         for (int i = 0; i < settings->n_neighbours && status == WB_OK; i++, model->n_followers++)
             status = wb_cantilever_create(&model->followers[i], &beam, NULL);
     }
-    if (status != WB_OK) {
+    if (status == WB_OK)
+        *out = model;
+    else
         wb_cycle_model_destroy(model);
-        return status;
-    }
-    *out = model;
-    return WB_OK;
+    return status;
 }
 
 void wb_cycle_model_destroy(struct wb_cycle_model *model)

@@ -710,13 +710,12 @@ enum wb_status wb_calibrate_run(struct wb_calibrate_result *result,
     WB_TRY(wb_curve_average_on(&curve, datasets, n, &grid, why));
     const enum wb_status status = calibrate_curve(&made, &curve, datasets, n, settings, why);
     wb_curve_release(&curve);
-    if (status != WB_OK) {
-        wb_calibrate_result_release(&made);
-        return status;
-    }
     made.cpu_s = wb_progress_thread_cpu() - started;
-    *result = made;
-    return WB_OK;
+    if (status == WB_OK)
+        *result = made;
+    else
+        wb_calibrate_result_release(&made);
+    return status;
 }
 
 void wb_calibrate_result_release(struct wb_calibrate_result *result)

@@ -25,16 +25,14 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
                                   const struct wb_computed_settings *settings)
 {
     *out = NULL;
-    struct wb_computed *const computed = wb_memory_new(1, sizeof *computed);
-    computed->info = *info;
-    computed->settings = *settings;
-    if (info->is_follower && info->strand_length != 0.0) {
-        wb_computed_destroy(computed);
+    if (info->is_follower && info->strand_length != 0.0)
         return wb_fail_to(
             settings->why, WB_ERR_ARGUMENT,
             "wire '%s': the test has a follower force and a strand: expected one of them",
             info->wire);
-    }
+    struct wb_computed *const computed = wb_memory_new(1, sizeof *computed);
+    computed->info = *info;
+    computed->settings = *settings;
     enum wb_status status = settings->law
                                 ? wb_section_init_law(&computed->section, info->outer_diameter,
                                                       settings->law, settings->n_fibres)
@@ -53,16 +51,14 @@ enum wb_status wb_computed_create(struct wb_computed **out, const struct wb_test
         model.strand_length = info->strand_length;
         model.counterweight = info->counterweight;
         model.mass_per_length = info->mass_per_length;
-        model.gravity_x = 0.0;
         model.gravity_y = -info->gravity;
         status = wb_cantilever_create(&computed->cantilever, &model, NULL);
     }
-    if (status != WB_OK) {
+    if (status == WB_OK)
+        *out = computed;
+    else
         wb_computed_destroy(computed);
-        return status;
-    }
-    *out = computed;
-    return WB_OK;
+    return status;
 }
 
 struct wb_reason *wb_computed_reason(const struct wb_computed *computed)

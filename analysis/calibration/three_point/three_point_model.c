@@ -77,12 +77,11 @@ enum wb_status wb_three_point_model_create(struct wb_three_point_model **out,
         status = wb_three_point_bending_create(&model->bending, &how);
         wb_section_release(&section);
     }
-    if (status != WB_OK) {
+    if (status == WB_OK)
+        *out = model;
+    else
         wb_three_point_model_destroy(model);
-        return status;
-    }
-    *out = model;
-    return WB_OK;
+    return status;
 }
 
 void wb_three_point_model_destroy(struct wb_three_point_model *model)
