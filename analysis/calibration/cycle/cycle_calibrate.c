@@ -526,9 +526,9 @@ static const struct wb_law *law_of(const struct wb_cycle_calibration *calibratio
     return &calibration->members[i].answers[candidate].fit.law;
 }
 
-static double outer_radius(const struct wb_cycle_calibration *calibration)
+static double diameter_of(const struct wb_cycle_calibration *calibration)
 {
-    return 0.5 * calibration->members[0].data.info.outer_diameter;
+    return calibration->members[0].data.info.outer_diameter;
 }
 
 static struct wb_cycle_grid find_grid(const struct wb_cycle_calibration *calibration)
@@ -540,7 +540,7 @@ static struct wb_cycle_grid find_grid(const struct wb_cycle_calibration *calibra
         grid.first_strain = fmin(grid.first_strain, first_strain(&member->data));
         if (fit)
             grid.last_strain =
-                fmax(grid.last_strain, outer_radius(calibration) * fit->clamp_curvature);
+                fmax(grid.last_strain, 0.5 * diameter_of(calibration) * fit->clamp_curvature);
     }
     /* A short test keeps a distance between the two. */
     grid.last_strain = fmax(grid.last_strain, 5.0 * grid.first_strain);
@@ -685,12 +685,12 @@ static bool chaboche_is_needed(const struct wb_cycle_calibration *calibration)
 /* Results of a law at the mean strain rate of the specimens; `value` is indexed by enum
  * wb_cycle_number. */
 static enum wb_status describe_law(const struct wb_cycle_calibration *calibration,
-                                   const struct wb_law *fitted, double diameter, double *value)
+                                   const struct wb_law *fitted, double *value)
 {
     struct wb_law law = *fitted;
     const struct wb_cycle_stiffness *const s = &calibration->secant;
     const struct wb_cycle_stiffness *const u = &calibration->unloading;
-    const double largest = calibration->largest_curvature;
+    const double diameter = diameter_of(calibration), largest = calibration->largest_curvature;
     struct wb_bending bending;
     if (calibration->strain_rate > 0.0)
         law.strain_rate = calibration->strain_rate;
@@ -708,12 +708,12 @@ static enum wb_status describe_law(const struct wb_cycle_calibration *calibratio
 }
 
 /* Standard errors of the logarithms of an answer, from the results of the moved laws. */
-static enum wb_status find_answer_errors(struct wb_cycle_answer *answer, double diameter,
+static enum wb_status find_answer_errors(struct wb_cycle_answer *answer,
                                          const struct wb_cycle_calibration *calibration)
 {
     double moved[WB_CYCLE_NUMBERS] = {0.0};
     for (int i = 0; i < answer->fit.n_moved; i++) {
-        WB_TRY(describe_law(calibration, &answer->fit.moved[i], diameter, moved));
+        WB_TRY(describe_law(calibration, &answer->fit.moved[i], moved));
         for (int k = 0; k < WB_CYCLE_NUMBERS; k++) {
             if (answer->value[k] > 0.0)
                 answer->error[k] +=
@@ -732,7 +732,6 @@ static enum wb_status find_answer_effects(struct wb_cycle_answer *answer,
                                           const struct wb_cycle_data *data,
                                           const struct wb_cycle_calibration *calibration)
 {
-    const double diameter = data->info.outer_diameter;
     double altered[WB_CYCLE_NUMBERS] = {0.0};
     for (int i = 0; i < WB_SHARED; i++) {
         const bool is_there = wb_cycle_shared_applies(data, i);
@@ -740,7 +739,7 @@ static enum wb_status find_answer_effects(struct wb_cycle_answer *answer,
             answer->effect[i][k] = (double)NAN;
         if (!answer->fit.has_altered[i])
             continue;
-        WB_TRY(describe_law(calibration, &answer->fit.altered[i], diameter, altered));
+        WB_TRY(describe_law(calibration, &answer->fit.altered[i], altered));
         for (int k = 0; k < WB_CYCLE_NUMBERS; k++) {
             if (answer->value[k] > 0.0)
                 answer->effect[i][k] =
@@ -788,7 +787,6 @@ static bool is_near_resolved(const struct wb_cycle_stiffness *stiffness, double 
 
 static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
 {
-    const double diameter = 2.0 * outer_radius(calibration);
     double first = least_curvature, change = least_curvature;
 
     calibration->largest_curvature = (double)INFINITY;
@@ -814,9 +812,9 @@ static enum wb_status describe_answers(struct wb_cycle_calibration *calibration)
             struct wb_cycle_answer *const answer = &calibration->members[i].answers[c];
             if (!answer->is_fitted)
                 continue;
-            WB_TRY(describe_law(calibration, &answer->fit.law, diameter, answer->value));
+            WB_TRY(describe_law(calibration, &answer->fit.law, answer->value));
             if (candidate_counts(calibration, c))
-                WB_TRY(find_answer_errors(answer, diameter, calibration));
+                WB_TRY(find_answer_errors(answer, calibration));
             if (c == (int)calibration->chosen)
                 WB_TRY(find_answer_effects(answer, &calibration->members[i].data, calibration));
         }
@@ -948,8 +946,8 @@ static enum wb_status find_equivalent(const struct wb_cycle_calibration *calibra
     *misfit = 0.0;
     return law->form == WB_LAW_LUDWIK
                ? WB_OK
-               : wb_bending_ludwik(law, 2.0 * outer_radius(calibration),
-                                   calibration->largest_curvature, ludwik, misfit);
+               : wb_bending_ludwik(law, diameter_of(calibration), calibration->largest_curvature,
+                                   ludwik, misfit);
 }
 
 static enum wb_status find_equivalents(struct wb_cycle_calibration *calibration)

@@ -67,20 +67,14 @@ const char *wb_three_point_limit_name(enum wb_three_point_limit limit)
 
 /* The readings of the first loading, by increasing travel, and of the unloading. */
 struct readings {
-    size_t n, top; /* number of readings; index of the largest travel */
-    double *travel, *force;
+    size_t n, top;          /* number of readings; index of the largest travel */
+    double *travel, *force; /* (n), one block */
 };
-
-static void release(struct readings *r)
-{
-    free(r->travel);
-    free(r->force);
-}
 
 static void collect(const struct wb_dataset *dataset, struct readings *r)
 {
-    r->travel = wb_memory_new(dataset->n_rows, sizeof *r->travel);
-    r->force = wb_memory_new(dataset->n_rows, sizeof *r->force);
+    r->travel = wb_memory_new(2 * dataset->n_rows, sizeof *r->travel);
+    r->force = r->travel + dataset->n_rows;
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
         if (row->cycle != dataset->rows[0].cycle || !isfinite(row->deflection) ||
@@ -359,7 +353,7 @@ enum wb_status wb_three_point_data_make(struct wb_three_point_data *data,
                             dataset->info.wire, dataset->info.sample, readings.n, LEAST_POINTS);
     if (status == WB_OK)
         status = make(data, &readings, settings, why);
-    release(&readings);
+    free(readings.travel);
     if (status != WB_OK)
         wb_three_point_data_release(data);
     return status;
