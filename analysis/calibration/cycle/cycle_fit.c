@@ -450,7 +450,7 @@ static void move_law(const struct wb_cycle_search *p, const gsl_vector *x, gsl_m
                      struct wb_cycle_fit *fit)
 {
     double free[WB_FIT_MOST_FREE], step[WB_FIT_MOST_FREE];
-    struct wb_reason why;
+    struct wb_cycle_specimen specimen;
     fit->n_moved = 0;
     if (gsl_linalg_cholesky_decomp1(covariance) != GSL_SUCCESS)
         return;
@@ -463,10 +463,8 @@ static void move_law(const struct wb_cycle_search *p, const gsl_vector *x, gsl_m
         for (int i = 0; i < p->parameters.n_free; i++)
             step[i] = gsl_vector_get(x, (size_t)i) +
                       (i < k ? 0.0 : by * gsl_vector_get(&side.vector, (size_t)i));
-        wb_cycle_parameters_at(&p->parameters, step, free);
-        wb_cycle_parameters_law(&p->parameters, free, &fit->moved[k]);
         fit->moved_by[k] = by;
-        if (wb_law_check(&fit->moved[k], &why) != WB_OK)
+        if (!take_numbers(p, step, free, &fit->moved[k], &specimen))
             return;
     }
     fit->n_moved = p->parameters.n_law;
@@ -551,7 +549,6 @@ static void find_altered(struct wb_cycle_search *p, const gsl_matrix *squares, c
     struct wb_cycle_data altered;
     struct wb_cycle_search q = *p;
     double free_numbers[WB_FIT_MOST_FREE], numbers[WB_FIT_MOST_FREE];
-    struct wb_reason why;
     if (shared == WB_SHARED_RELAXATION)
         q.parameters.beside = unseen_element(p, &fit->law, wb_cycle_shared_change(shared));
     if (!wb_cycle_shared_alter(&altered, p->parameters.data, shared,
@@ -570,10 +567,8 @@ static void find_altered(struct wb_cycle_search *p, const gsl_matrix *squares, c
     if (good) {
         for (int i = 0; i < p->parameters.n_free; i++)
             numbers[i] += p->slopes_x[i];
-        wb_cycle_parameters_at(&q.parameters, numbers, free_numbers);
-        wb_cycle_parameters_law(&q.parameters, free_numbers, &fit->altered[shared]);
-        fit->altered_specimen[shared] = wb_cycle_parameters_specimen(&q.parameters, free_numbers);
-        fit->has_altered[shared] = wb_law_check(&fit->altered[shared], &why) == WB_OK;
+        fit->has_altered[shared] = take_numbers(&q, numbers, free_numbers, &fit->altered[shared],
+                                                &fit->altered_specimen[shared]);
     }
     wb_cycle_model_destroy(q.model);
     gsl_vector_free(change);

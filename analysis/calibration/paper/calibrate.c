@@ -380,11 +380,10 @@ static enum wb_status refine_by_gauss_newton(struct wb_calibrate_result *result,
     *converged = *converged && violation(to[0], material.hardening_exponent) == 0.0;
     if (!*converged)
         return WB_OK;
-    for (int i = 0; i < 2; i++) {
-        const bool has_moved = i == 0 ? material.strength_coefficient != before.strength_coefficient
-                                      : material.hardening_exponent != before.hardening_exponent;
-        at[i] = has_moved ? to[i] : at[i];
-    }
+    if (material.strength_coefficient != before.strength_coefficient)
+        at[0] = to[0];
+    if (material.hardening_exponent != before.hardening_exponent)
+        at[1] = to[1];
     const gsl_vector_const_view there = gsl_vector_const_view_array(at, 2);
     add_step(result, objective, &there.vector, evaluate(&there.vector, objective),
              result->path[result->n_path - 1].size);

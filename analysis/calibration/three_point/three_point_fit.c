@@ -453,10 +453,8 @@ enum wb_status wb_three_point_fit_run(struct wb_three_point_fit *fit,
     const double no_step[WB_THREE_POINT_MOST_FREE] = {0.0};
     struct problem p = {.data = data, .strains = strains, .settings = settings};
     struct wb_law law;
-    double last_force = data->points[0].force;
+    const double last_force = data->points[wb_three_point_data_count_loading(data) - 1].force;
 
-    for (int i = 0; i < data->n_points && !data->points[i].is_unloading; i++)
-        last_force = data->points[i].force;
     *fit = (struct wb_three_point_fit){.is_converged = false};
     p.end = data->usable - bench->compliance * last_force;
     if (!(p.end > data->first_contact))
