@@ -42,9 +42,9 @@ double wb_first_guess_strength(double modulus, double yield_stress, double expon
     return yield_stress * pow(modulus / yield_stress, exponent);
 }
 
-/* Line through grid points first..last; its value at `deflection` and its slope. */
-static void fit_line(const struct wb_curve *curve, int first, int last, double deflection,
-                     double *value, double *slope)
+/* Line through grid points first..last: its value at `deflection`, and its slope. */
+static double fit_line(const struct wb_curve *curve, int first, int last, double deflection,
+                       double *slope)
 {
     const int n = last - first + 1;
     const double middle = 0.5 * (first + last) * curve->step;
@@ -56,7 +56,7 @@ static void fit_line(const struct wb_curve *curve, int first, int last, double d
         xy += x * curve->force[i];
     }
     *slope = xy / xx;
-    *value = mean + *slope * (deflection - middle);
+    return mean + *slope * (deflection - middle);
 }
 
 /* Force at a deflection from a straight line fitted to the grid points around it, at least one on
@@ -66,15 +66,14 @@ static double force_at(const struct wb_curve *curve, double deflection, double l
     const double place = deflection / curve->step, half = FORCE_RANGE * length / curve->step;
     int first = (int)fmin(ceil(place - half), floor(place));
     int last = (int)fmax(floor(place + half), floor(place) + 1.0);
-    double value, slope;
+    double slope;
     if (last > curve->n - 1)
         last = curve->n - 1;
     if (first > last - 1)
         first = last - 1;
     if (first < 0)
         first = 0;
-    fit_line(curve, first, last, deflection, &value, &slope);
-    return value;
+    return fit_line(curve, first, last, deflection, &slope);
 }
 
 static enum wb_status check_reach(const struct wb_curve *curve, const struct wb_test_info *info,
@@ -153,8 +152,8 @@ static enum wb_status run(struct wb_first_guess *guess, const struct wb_curve *c
     if (last > curve->n - 1)
         return wb_fail_to(why, WB_ERR_DATA, "wire '%s': too few points beyond the yield point",
                           info->wire);
-    double value, slope;
-    fit_line(curve, first, last, first * curve->step, &value, &slope);
+    double slope;
+    (void)fit_line(curve, first, last, first * curve->step, &slope);
     /* d sigma / d eps = (dF / d delta) (32 L / (pi d^3)) / (3 d / (2 L^2)). */
     result.tangent_modulus = wb_first_guess_stress(slope, length, diameter) /
                              wb_first_guess_strain(1.0, length, diameter);
