@@ -169,7 +169,6 @@ static enum wb_status fill_nodes(struct wb_cycle_valley *valley, struct problem 
                 continue;
             node->exponent = n;
             node->stress = exp(numbers[STRESS]);
-            node->strength = exp(numbers[STRESS]) / pow(WB_BENDING_PLASTIC_STRAIN, n);
             if (adapt(p, base, numbers))
                 WB_TRY(run(p, numbers, &node->misfit));
         }

@@ -18,9 +18,9 @@ enum {
 };
 
 struct wb_cycle_valley_node {
-    double strength, exponent; /* K (Pa), n */
-    double stress;             /* Pa: hardening stress at WB_BENDING_PLASTIC_STRAIN */
-    double misfit;             /* RMS over the largest force; NaN: no such law, or not computed */
+    double exponent;
+    double stress; /* Pa: hardening stress at WB_BENDING_PLASTIC_STRAIN */
+    double misfit; /* RMS over the largest force; NaN: no such law, or not computed */
 };
 
 struct wb_cycle_valley {

@@ -347,7 +347,6 @@ static void finish(struct wb_moment_cloud *cloud, const struct fitting *f, doubl
         sqrt((prior_places * pow(place_deviation, 2) + f->all_square_sum / f->n_states) /
              (prior_places + free_places));
     const double natural = 2.0 * bow_deviation / (f->info->length * f->info->length);
-    cloud->place_rms = sqrt(f->all_square_sum / fmax(f->all_degrees, 1.0));
     for (int i = 0; i < cloud->n; i++) {
         const struct wb_moment_point *const point = &cloud->points[i];
         if (point->s == 0.0 && !point->is_unloading)

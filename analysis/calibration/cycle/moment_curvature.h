@@ -32,9 +32,8 @@ struct wb_moment_point {
 struct wb_moment_cloud {
     int n;
     struct wb_moment_point
-        *points;      /* (n), owned; first those of the loading, in the order of the test */
-    double largest;   /* 1/m: largest of the clamp on the loading */
-    double place_rms; /* m: RMS distance of the markers from the fitted shapes */
+        *points;    /* (n), owned; first those of the loading, in the order of the test */
+    double largest; /* 1/m: largest of the clamp on the loading */
 };
 
 /* Takes the points of the first cycle. `specimen`: bow and level of a fit; NULL: the natural shape

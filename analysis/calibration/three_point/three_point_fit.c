@@ -94,7 +94,6 @@ struct problem {
     double of[WB_THREE_POINT_MOST_FREE];
     bool is_computed;
     struct wb_three_point_run run;
-    int runs;
     enum wb_status status;
 };
 
@@ -200,7 +199,6 @@ static void compute(struct problem *p, const double *x)
     law_of(p, x, &law);
     if (wb_law_check(&law, &why) != WB_OK)
         return;
-    p->runs++;
     p->status = wb_three_point_model_run(
         p->model, &law, wb_three_point_model_curvature(&p->data->info, bow_of(p, x)),
         deepest_of(p, x), p->data->has_unloading, &p->run);
@@ -478,7 +476,6 @@ enum wb_status wb_three_point_fit_run(struct wb_three_point_fit *fit,
     const enum wb_status status = search(&p, bench, w, fit, why);
     gsl_multifit_nlinear_free(w);
     wb_three_point_model_destroy(p.model);
-    fit->runs = p.runs;
     fit->cpu_s = wb_progress_thread_cpu() - begin;
     return status;
 }

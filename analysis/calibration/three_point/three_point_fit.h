@@ -64,7 +64,6 @@ struct wb_three_point_fit {
     int n_moved;
     double moved_by[WB_THREE_POINT_MOST_FREE];
     struct wb_law moved[WB_THREE_POINT_MOST_FREE];
-    int runs;
     double cpu_s;
 };
 
