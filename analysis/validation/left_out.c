@@ -1,8 +1,6 @@
 #include "analysis/validation/left_out.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "analysis/calibration/three_point/three_point_model.h"
 #include "base/units.h"

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "analysis/dataset/curve.h"
 #include "analysis/dataset/fit.h"

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "analysis/calibration/cycle/cycle_bow.h"
 #include "analysis/calibration/paper/computed.h"
@@ -13,9 +12,7 @@
 #include "analysis/validation/expected.h"
 #include "analysis/validation/marker_distance.h"
 #include "analysis/validation/validate_bounds.h"
-#include "analysis/validation/validate_private.h"
 #include "analysis/validation/validate_tables.h"
-#include "base/file.h"
 #include "base/memory.h"
 #include "base/progress.h"
 #include "base/text.h"
@@ -27,9 +24,8 @@
 #define NEAR_ZERO (5.0 * WB_MM)
 /* Relative difference of diameters above which two wires are different. */
 #define SAME_DIAMETER 0.01
-/* Deflection step towards a shape, m, and number of force steps towards one. */
+/* Deflection step towards a shape, m. */
 #define SHAPE_STEP (1.0 * WB_MM)
-#define FORCE_STEPS 100
 /* Frames of a follower test's model per step of the grid, between which the deflection may change a
  * lot. */
 #define FRAMES 4
@@ -88,14 +84,18 @@ static void compute_errors(struct wb_prediction *prediction, const struct wb_cur
         n >= first + 2 ? wb_errors_rms(n - first, prediction->error + first) : (double)NAN;
 }
 
-static enum wb_status predict(struct wb_prediction *prediction, struct wb_computed *computed,
-                              const struct wb_material *material, const struct wb_curve *curve)
+/* Computes the curve of one test on the grid of `curve`. */
+static enum wb_status compute_curve(double *value, int *n_reached, const struct wb_test_info *info,
+                                    const struct wb_material *material,
+                                    const struct wb_curve *curve,
+                                    const struct wb_computed_settings *how)
 {
-    take_room(prediction, curve);
-    WB_TRY(wb_computed_curve(computed, material, curve->n, curve->step, prediction->value,
-                             &prediction->n_reached));
-    compute_errors(prediction, curve);
-    return WB_OK;
+    struct wb_computed *computed;
+    WB_TRY(wb_computed_create(&computed, info, material, how));
+    const enum wb_status status =
+        wb_computed_curve(computed, material, curve->n, curve->step, value, n_reached);
+    wb_computed_destroy(computed);
+    return status;
 }
 
 /* Mean of the predictions for each sample's own bow. Wires bowed up and down yield differently, so
@@ -110,13 +110,8 @@ static enum wb_status predict_mean(struct wb_prediction *prediction,
     enum wb_status status = WB_OK;
     prediction->n_reached = curve->n;
     for (int i = 0; status == WB_OK && i < n; i++) {
-        struct wb_computed *computed;
         int reached = 0;
-        status = wb_computed_create(&computed, &datasets[i]->info, material, how);
-        if (status != WB_OK)
-            break;
-        status = wb_computed_curve(computed, material, curve->n, curve->step, value, &reached);
-        wb_computed_destroy(computed);
+        status = compute_curve(value, &reached, &datasets[i]->info, material, curve, how);
         for (int k = 0; status == WB_OK && k < curve->n; k++)
             prediction->value[k] += value[k] / n;
         prediction->n_reached = reached < prediction->n_reached ? reached : prediction->n_reached;
@@ -143,15 +138,10 @@ static enum wb_status find_sensitivity(double *G, const struct wb_validate_resul
     for (int side = 0; status == WB_OK && side < 2; side++) {
         const struct wb_law scaled = wb_validate_stiffer(law, side == 0 ? -by : by);
         struct wb_computed_settings with = *how;
-        struct wb_computed *computed;
         int reached = 0;
         with.law = how->law ? &scaled : NULL;
-        status = wb_computed_create(&computed, &result->info, &scaled.material, &with);
-        if (status == WB_OK) {
-            status = wb_computed_curve(computed, &scaled.material, curve->n, curve->step,
-                                       value + side * curve->n, &reached);
-            wb_computed_destroy(computed);
-        }
+        status = compute_curve(value + side * curve->n, &reached, &result->info, &scaled.material,
+                               curve, &with);
         complete = complete && reached == curve->n;
     }
     for (int i = 0; status == WB_OK && complete && i < curve->n; i++)
@@ -248,13 +238,13 @@ static enum wb_status predict_elastic(struct wb_validate_result *result,
 {
     struct wb_computed_settings without = *how;
     struct wb_material elastic = *material;
-    struct wb_computed *computed;
     elastic.hardening = WB_HARDENING_NONE_ELASTIC;
     without.law = NULL;
-    WB_TRY(wb_computed_create(&computed, &result->info, material, &without));
-    const enum wb_status status = predict(&result->elastic, computed, &elastic, &result->curve);
-    wb_computed_destroy(computed);
-    return status;
+    take_room(&result->elastic, &result->curve);
+    WB_TRY(compute_curve(result->elastic.value, &result->elastic.n_reached, &result->info, &elastic,
+                         &result->curve, &without));
+    compute_errors(&result->elastic, &result->curve);
+    return WB_OK;
 }
 
 static enum wb_status validate_curve(struct wb_validate_result *result,
@@ -407,23 +397,13 @@ static void put_rows(struct wb_text *text, const struct wb_validate_result *resu
                              : "deflection_mm,measured_N,low_N,high_N,deviation_N,elastoplastic_N,"
                                "elastoplastic_error,elastic_N,elastic_error\n");
     for (int i = 0; i < curve->n; i++) {
-        wb_validate_tables_put(text, i * (curve->step / grid_unit), ',');
-        wb_validate_tables_put(text, curve->value[i] / unit, ',');
-        wb_validate_tables_put(text, curve->low[i] / unit, ',');
-        wb_validate_tables_put(text, curve->high[i] / unit, ',');
-        wb_validate_tables_put(text, curve->deviation[i] / unit, ',');
-        wb_validate_tables_put(text, result->elastoplastic.value[i] / unit, ',');
-        wb_validate_tables_put(text, result->elastoplastic.error[i], ',');
-        wb_validate_tables_put(text, result->elastic.value[i] / unit, ',');
-        wb_validate_tables_put(text, result->elastic.error[i], '\n');
+        const double row[] = {i * (curve->step / grid_unit),  curve->value[i] / unit,
+                              curve->low[i] / unit,           curve->high[i] / unit,
+                              curve->deviation[i] / unit,     result->elastoplastic.value[i] / unit,
+                              result->elastoplastic.error[i], result->elastic.value[i] / unit,
+                              result->elastic.error[i]};
+        wb_validate_tables_put_row(text, row, WB_COUNT(row));
     }
-}
-
-static enum wb_status write_text(struct wb_text *text, const char *path)
-{
-    const enum wb_status status = wb_file_write_text(path, text);
-    wb_text_release(text);
-    return status;
 }
 
 enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, const char *path)
@@ -431,7 +411,7 @@ enum wb_status wb_validate_write_csv(const struct wb_validate_result *result, co
     struct wb_text text = {0};
     wb_validate_tables_put_origin(&text, &result->info, result->curve.n_samples);
     put_rows(&text, result);
-    return write_text(&text, path);
+    return wb_validate_tables_write(&text, path);
 }
 
 enum wb_status wb_validate_write_unloading(const struct wb_validate_result *result,
@@ -443,12 +423,11 @@ enum wb_status wb_validate_write_unloading(const struct wb_validate_result *resu
     wb_text_append(&text, "deflection_mm,measured_N,elastoplastic_N,elastoplastic_error\n");
     for (int i = 0; i < cycles->n; i++) {
         const double difference = cycles->measured[i] - cycles->computed[i];
-        wb_validate_tables_put(&text, cycles->deflection[i] / WB_MM, ',');
-        wb_validate_tables_put(&text, cycles->measured[i], ',');
-        wb_validate_tables_put(&text, cycles->computed[i], ',');
-        wb_validate_tables_put(&text, fabs(difference) / result->curve.max_force, '\n');
+        const double row[] = {cycles->deflection[i] / WB_MM, cycles->measured[i],
+                              cycles->computed[i], fabs(difference) / result->curve.max_force};
+        wb_validate_tables_put_row(&text, row, WB_COUNT(row));
     }
-    return write_text(&text, path);
+    return wb_validate_tables_write(&text, path);
 }
 
 void wb_validate_put_scores(struct wb_text *text, const struct wb_validate_result *result)
@@ -518,56 +497,24 @@ static enum wb_status move_to_deflection(struct wb_computed *computed,
     return WB_OK;
 }
 
-/* The same for a follower force. */
-static enum wb_status load_to_force(struct wb_computed *computed,
-                                    const struct wb_material *material, double force)
-{
-    bool reached;
-    double deflection;
-    WB_TRY(wb_computed_start(computed, material, &reached));
-    for (int i = 1; reached && i <= FORCE_STEPS; i++)
-        WB_TRY(wb_computed_push(computed, force * i / FORCE_STEPS, &deflection, &reached));
-    if (!reached)
-        return wb_fail(WB_ERR_CONVERGENCE, "the beam does not converge before %.4g N", force);
-    return WB_OK;
-}
-
-/* Loads the wire to the target and copies its shape. */
-static enum wb_status
-find_shape(const struct wb_properties *properties, const struct wb_test_info *info,
-           enum wb_status (*go)(struct wb_computed *, const struct wb_material *, double),
-           double target, const struct wb_validate_points *points)
-{
-    const struct wb_computed_settings how = {.law = overlay_of(properties)};
-    const struct wb_material *const material = &properties->law.material;
-    struct wb_computed *computed;
-    if (points->n < 2 || !isfinite(target))
-        return wb_fail(WB_ERR_ARGUMENT, "a shape needs at least two points and a finite target");
-    double *const s = wb_memory_new((size_t)points->n, sizeof *s);
-    enum wb_status status = wb_computed_create(&computed, info, material, &how);
-    if (status == WB_OK) {
-        for (int i = 0; i < points->n; i++)
-            s[i] = info->length * i / (points->n - 1);
-        status = go(computed, material, target);
-        if (status == WB_OK)
-            wb_computed_shape(computed, points->n, s, points->x, points->y, points->angle);
-        wb_computed_destroy(computed);
-    }
-    free(s);
-    return status;
-}
-
 enum wb_status wb_validate_shape(const struct wb_properties *properties,
                                  const struct wb_test_info *info, double deflection, int n,
                                  double *x, double *y)
 {
-    const struct wb_validate_points points = {.n = n, .x = x, .y = y};
-    return find_shape(properties, info, move_to_deflection, deflection, &points);
-}
-
-enum wb_status wb_validate_follower_shape(const struct wb_properties *properties,
-                                          const struct wb_test_info *info, double force,
-                                          const struct wb_validate_points *points)
-{
-    return find_shape(properties, info, load_to_force, force, points);
+    const struct wb_computed_settings how = {.law = overlay_of(properties)};
+    const struct wb_material *const material = &properties->law.material;
+    struct wb_computed *computed;
+    if (n < 2 || !isfinite(deflection))
+        return wb_fail(WB_ERR_ARGUMENT, "a shape needs at least two points and a finite target");
+    WB_TRY(wb_computed_create(&computed, info, material, &how));
+    const enum wb_status status = move_to_deflection(computed, material, deflection);
+    if (status == WB_OK) {
+        double *const s = wb_memory_new((size_t)n, sizeof *s);
+        for (int i = 0; i < n; i++)
+            s[i] = info->length * i / (n - 1);
+        wb_computed_shape(computed, n, s, x, y, NULL);
+        free(s);
+    }
+    wb_computed_destroy(computed);
+    return status;
 }

@@ -50,7 +50,6 @@ struct sample {
     double zero;     /* N: computed tension at zero deflection */
     double *adapted; /* (end_of_first) N: tension of a law as stiff as this specimen, */
     double adapted_zero;
-    double ln_stiffness; /* from its own loading; NaN if not found */
     double curvature;
     bool is_good; /* its first unloading was computed */
 };
@@ -174,10 +173,9 @@ static void find_stiffness(struct sample *sample, const double *stiffer)
         squares += slope * slope;
         products += slope * difference;
     }
-    sample->ln_stiffness = products / squares;
+    const double ln_stiffness = products / squares;
     for (int i = 0; i < sample->end_of_first; i++)
-        sample->adapted[i] = sample->tension[i] + sample->ln_stiffness *
-                                                      (stiffer[i] - sample->tension[i]) /
+        sample->adapted[i] = sample->tension[i] + ln_stiffness * (stiffer[i] - sample->tension[i]) /
                                                       wb_validate_stiffer_by;
     sample->adapted_zero = sample->adapted[0];
 }

@@ -3,14 +3,21 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/file.h"
 #include "base/number.h"
 #include "base/units.h"
 #include "base/version.h"
 
-void wb_validate_tables_put(struct wb_text *text, double value, char end)
+static void put(struct wb_text *text, double value, char end)
 {
     char number[WB_NUMBER_TEXT];
     wb_text_append(text, "%s%c", isfinite(value) ? wb_number_format(value, number) : "", end);
+}
+
+void wb_validate_tables_put_row(struct wb_text *text, const double *values, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        put(text, values[i], i + 1 < n ? ',' : '\n');
 }
 
 /* The wire's name with the characters replaced that would break a table. */
@@ -47,6 +54,13 @@ void wb_validate_tables_put_score(struct wb_text *text, const struct wb_test_inf
     plain_name(wire, sizeof wire, info);
     wb_text_append(text, "%s,%g,%s,", wire, info->length / WB_MM, score);
     for (int i = 0; i < 3; i++)
-        wb_validate_tables_put(text, values[i], ',');
+        put(text, values[i], ',');
     wb_text_append(text, "%s\n", unit);
+}
+
+enum wb_status wb_validate_tables_write(struct wb_text *text, const char *path)
+{
+    const enum wb_status status = wb_file_write_text(path, text);
+    wb_text_release(text);
+    return status;
 }

@@ -10,7 +10,6 @@
 #include "analysis/dataset/fit.h"
 #include "analysis/validation/validate.h"
 #include "analysis/validation/validate_tables.h"
-#include "base/file.h"
 #include "base/memory.h"
 #include "base/progress.h"
 #include "base/units.h"
@@ -525,20 +524,17 @@ enum wb_status wb_validate_three_point_write_csv(const struct wb_validate_three_
     wb_text_append(&text, "deflection_mm,measured_N,deviation_N,computed_N,error%s\n",
                    unloading ? "" : ",elastic_N");
     for (int k = 0; k < branch->n; k++) {
-        wb_validate_tables_put(&text, branch->deflection[k] / WB_MM, ',');
-        wb_validate_tables_put(&text, branch->measured[k], ',');
-        wb_validate_tables_put(&text, branch->deviation[k], ',');
-        wb_validate_tables_put(&text, branch->computed[k], ',');
-        wb_validate_tables_put(&text,
-                               fabs(branch->measured[k] - branch->computed[k]) / result->max_force,
-                               unloading ? '\n' : ',');
-        if (!unloading)
-            wb_validate_tables_put(
-                &text, isfinite(result->elastic_rms) ? result->elastic[k] : (double)NAN, '\n');
+        const double row[] = {
+            branch->deflection[k] / WB_MM,
+            branch->measured[k],
+            branch->deviation[k],
+            branch->computed[k],
+            fabs(branch->measured[k] - branch->computed[k]) / result->max_force,
+            isfinite(result->elastic_rms) ? result->elastic[k] : (double)NAN,
+        };
+        wb_validate_tables_put_row(&text, row, unloading ? WB_COUNT(row) - 1 : WB_COUNT(row));
     }
-    const enum wb_status status = wb_file_write_text(path, &text);
-    wb_text_release(&text);
-    return status;
+    return wb_validate_tables_write(&text, path);
 }
 
 void wb_validate_three_point_put_scores(struct wb_text *text,

@@ -7,7 +7,7 @@
 #include "analysis/calibration/paper/calibrate.h"
 #include "analysis/calibration/paper/first_guess.h"
 #include "analysis/calibration/properties/properties.h"
-#include "analysis/validation/validate_private.h"
+#include "analysis/validation/validate.h"
 #include "base/file.h"
 
 static const double mm = WB_MM;
@@ -35,6 +35,35 @@ static int release_composite(void **state)
     (void)state;
     wb_dataset_release(&composite);
     return 0;
+}
+
+/* The shape of a follower test under a force (N): n points at equal arc length. The force may be
+ * one under which the wire has curled up and the deflection decreases again. */
+static enum wb_status shape_under(const struct wb_properties *properties,
+                                  const struct wb_test_info *info, double force, int n, double *x,
+                                  double *y, double *angle)
+{
+    enum {
+        FORCE_STEPS = 100
+    };
+    const struct wb_computed_settings how = {.n_elements = 0};
+    const struct wb_material *const material = &properties->law.material;
+    struct wb_computed *computed;
+    double s[33], deflection;
+    bool reached;
+    for (int i = 0; i < n; i++)
+        s[i] = info->length * i / (n - 1);
+    assert_int_equal(wb_computed_create(&computed, info, material, &how), WB_OK);
+    assert_int_equal(wb_computed_start(computed, material, &reached), WB_OK);
+    enum wb_status status = WB_OK;
+    for (int i = 1; status == WB_OK && i <= FORCE_STEPS; i++) {
+        assert_true(reached);
+        status = wb_computed_push(computed, force * i / FORCE_STEPS, &deflection, &reached);
+    }
+    if (status == WB_OK)
+        wb_computed_shape(computed, n, s, x, y, angle);
+    wb_computed_destroy(computed);
+    return status;
 }
 
 /* Material of a homogenised circle of the same outer diameter that bends like the bare core:
@@ -269,7 +298,6 @@ static void the_composite_wire_is_reproduced_to_the_end(void **state)
     const struct wb_row *const end = &composite.rows[STEPS];
     const struct wb_material bare = equivalent();
     double x[21], y[21], angle[21];
-    const struct wb_validate_points points = {21, x, y, angle};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct wb_calibrate_settings settings = quick_settings();
         struct wb_calibrate_result result;
@@ -280,8 +308,8 @@ static void the_composite_wire_is_reproduced_to_the_end(void **state)
         settings.restart = false;
         assert_int_equal(calibrate_one(&result, &composite, &settings), WB_OK);
         wb_properties_from_result(&result, &properties);
-        assert_int_equal(
-            wb_validate_follower_shape(&properties, &composite.info, last_force, &points), WB_OK);
+        assert_int_equal(shape_under(&properties, &composite.info, last_force, 21, x, y, angle),
+                         WB_OK);
         const double away = hypot(x[20] - end->tip_x, y[20] - end->deflection);
         const double turned = angle[20] - end->tip_angle;
         print_message(
@@ -441,12 +469,11 @@ static void the_distance_of_the_models_own_shapes_is_zero(void **state)
     struct wb_dataset dataset;
     struct wb_validate_result result;
     double x[11], y[11];
-    const struct wb_validate_points points = {11, x, y, NULL};
     homogenised_dataset(&dataset, &composite.info, &properties.material);
     for (int i = 8; i <= STEPS; i += 8) {
         const struct wb_row *const row = &dataset.rows[i];
-        assert_int_equal(
-            wb_validate_follower_shape(&properties, &dataset.info, row->force, &points), WB_OK);
+        assert_int_equal(shape_under(&properties, &dataset.info, row->force, 11, x, y, NULL),
+                         WB_OK);
         for (int k = 0; k < 11; k++) {
             const struct wb_shape_row shape = {.t = row->t,
                                                .deflection = row->deflection,
@@ -472,17 +499,15 @@ static void force_control_reaches_shapes_beyond_deflection_control(void **state)
     const struct wb_properties properties = fitted_properties();
     struct wb_test_info info = follower_info(0.1);
     double x[33], y[33], x2[33], y2[33], angle[33];
-    const struct wb_validate_points points = {33, x, y, angle};
-    assert_int_equal(wb_validate_follower_shape(&properties, &info, 18.0, &points), WB_OK);
+    assert_int_equal(shape_under(&properties, &info, 18.0, 33, x, y, angle), WB_OK);
     assert_int_equal(wb_validate_shape(&properties, &info, y[32], 33, x2, y2), WB_OK);
     for (int i = 0; i < 33; i++)
         assert_close(hypot(x2[i] - x[i], y2[i] - y[i]), 0.0, 0.01 * mm);
-    assert_int_equal(wb_validate_follower_shape(&properties, &info, 23.0, &points), WB_OK);
+    assert_int_equal(shape_under(&properties, &info, 23.0, 33, x, y, angle), WB_OK);
     assert_true(angle[32] > 0.5 * M_PI && x[32] < 0.0);
     assert_int_equal(wb_validate_shape(&properties, &info, 0.095, 33, x2, y2), WB_ERR_CONVERGENCE);
     info.is_follower = false;
-    assert_int_equal(wb_validate_follower_shape(&properties, &info, 18.0, &points),
-                     WB_ERR_ARGUMENT);
+    assert_int_equal(shape_under(&properties, &info, 18.0, 33, x, y, angle), WB_ERR_ARGUMENT);
 }
 
 static void the_csv_lists_deflections(void **state)
