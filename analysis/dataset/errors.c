@@ -2,16 +2,6 @@
 
 #include <math.h>
 
-#include "analysis/dataset/errors_private.h"
-
-double wb_errors_integral(int n, double step, const double *values)
-{
-    double sum = 0.5 * (values[0] + values[n - 1]);
-    for (int i = 1; i < n - 1; i++)
-        sum += values[i];
-    return sum * step;
-}
-
 double wb_errors_l2(int n, double step, const double *measured, const double *computed)
 {
     double sum = 0.0;

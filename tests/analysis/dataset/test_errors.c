@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "analysis/dataset/errors_private.h"
+#include "analysis/dataset/errors.h"
 
 enum {
     N = 101
@@ -16,16 +16,6 @@ static void fill(double *measured, double *computed)
         measured[i] = 2.0 * x;
         computed[i] = 2.0 * x - x;
     }
-}
-
-static void integral_of_a_straight_line_is_exact(void **state)
-{
-    (void)state;
-    double values[N];
-    for (int i = 0; i < N; i++)
-        values[i] = 3.0 + 2.0 * i;
-    assert_close_relative(wb_errors_integral(N, 0.5, values), 0.5 * (3.0 * 100 + 100.0 * 100),
-                          1e-14);
 }
 
 static void l2_norm_is_that_of_equation_17(void **state)
@@ -83,7 +73,6 @@ static void not_a_number_is_not_hidden(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(integral_of_a_straight_line_is_exact),
         cmocka_unit_test(l2_norm_is_that_of_equation_17),
         cmocka_unit_test(rms_is_that_of_equation_19),
         cmocka_unit_test(relative_l2_norm_equals_the_rms),
