@@ -1,6 +1,7 @@
 #include "analysis/dataset/csv_table.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,6 +53,14 @@ void wb_csv_table_format_number(double value, int shift, char *text)
                  mantissa + exponent + 1);
 }
 
+void wb_csv_table_append_number(struct wb_text *text, double value, int shift)
+{
+    char number[WB_CSV_TABLE_NUMBER] = "";
+    if (isfinite(value))
+        wb_csv_table_format_number(value, shift, number);
+    wb_text_append_bytes(text, number, strlen(number));
+}
+
 bool wb_csv_table_parse_number(const char *text, int shift, double *value)
 {
     double plain;
@@ -73,8 +82,8 @@ bool wb_csv_table_parse_number(const char *text, int shift, double *value)
 enum wb_status wb_csv_table_refuse(const struct wb_csv_table *table, int column,
                                    const char *expected, const char *text)
 {
-    return wb_fail_to(table->why, WB_ERR_FORMAT, "%s:%d: %s: expected %s, not '%.40s'", table->path,
-                      table->line, table->columns[column], expected, text);
+    return wb_csv_table_fail(table, "%s: expected %s, not '%.40s'", table->columns[column],
+                             expected, text);
 }
 
 enum wb_status wb_csv_table_integer(const struct wb_csv_table *table, int column,
@@ -90,6 +99,18 @@ enum wb_status wb_csv_table_integer(const struct wb_csv_table *table, int column
     return wb_csv_table_refuse(table, column, expected, fields[column]);
 }
 
+char *wb_csv_table_line(struct wb_csv_table *table, char **text)
+{
+    if (!*text || **text == '\0')
+        return NULL;
+    char *const line = strsep(text, "\n");
+    const size_t length = strlen(line);
+    if (length > 0 && line[length - 1] == '\r')
+        line[length - 1] = '\0';
+    table->line++;
+    return line;
+}
+
 static enum wb_status split(const struct wb_csv_table *table, char *line, char **fields)
 {
     int n = 0;
@@ -100,8 +121,7 @@ static enum wb_status split(const struct wb_csv_table *table, char *line, char *
         n++;
     }
     if (n != table->n_columns)
-        return wb_fail_to(table->why, WB_ERR_FORMAT, "%s:%d: %d fields, expected %d", table->path,
-                          table->line, n, table->n_columns);
+        return wb_csv_table_fail(table, "%d fields, expected %d", n, table->n_columns);
     return WB_OK;
 }
 
@@ -109,8 +129,8 @@ static enum wb_status check_header(const struct wb_csv_table *table, char *const
 {
     for (int i = 0; i < table->n_columns; i++)
         if (strcmp(fields[i], table->columns[i]) != 0)
-            return wb_fail_to(table->why, WB_ERR_FORMAT, "%s:%d: expected column '%s', not '%.40s'",
-                              table->path, table->line, table->columns[i], fields[i]);
+            return wb_csv_table_fail(table, "expected column '%s', not '%.40s'", table->columns[i],
+                                     fields[i]);
     return WB_OK;
 }
 
@@ -124,13 +144,8 @@ enum wb_status wb_csv_table_parse(struct wb_csv_table *table, char *text, size_t
     if (size == 0)
         return wb_fail_to(table->why, WB_ERR_FORMAT,
                           "%s:1: empty file, expected a line of column names", table->path);
-    for (char *next = text; next && *next;) {
+    for (char *line; (line = wb_csv_table_line(table, &text));) {
         char *fields[WB_CSV_TABLE_MOST];
-        char *const line = strsep(&next, "\n");
-        const size_t length = strlen(line);
-        if (length > 0 && line[length - 1] == '\r')
-            line[length - 1] = '\0';
-        table->line++;
         WB_TRY(split(table, line, fields));
         WB_TRY(table->line == 1 ? check_header(table, fields)
                                 : table->take(table->context, table, fields));

@@ -5,7 +5,6 @@
 #define WB_ANALYSIS_DATASET_CSV_TABLE_H
 
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "base/reason.h"
 #include "base/status.h"
@@ -28,6 +27,12 @@ struct wb_csv_table {
     struct wb_reason *why; /* receives the reason of a failure; NULL: it is logged */
 };
 
+/* Fails with "FILE:LINE: message"; `format` is a literal. A macro, so that the domain of the
+ * message is that of the file in which it is used. */
+#define wb_csv_table_fail(table, format, ...)                                                      \
+    wb_fail_to((table)->why, WB_ERR_FORMAT, "%s:%d: " format, (table)->path, (table)->line,        \
+               __VA_ARGS__)
+
 /* For take(): rejects a field, or reads a whole number from 0 to `most`. */
 enum wb_status wb_csv_table_refuse(const struct wb_csv_table *table, int column,
                                    const char *expected, const char *text);
@@ -36,16 +41,20 @@ WB_MUST_CHECK enum wb_status wb_csv_table_integer(const struct wb_csv_table *tab
 
 /* --- numbers --- */
 
-/* Files contain millimetres; the decimal point is moved in the text, not in binary, so that every
- * double is read back bit for bit. Formats a finite double times 10^shift as the shortest decimal
- * text that wb_csv_table_parse_number() turns back into the same double; `text` needs
- * WB_CSV_TABLE_NUMBER bytes. */
+/* Bytes of a number as text. */
 #define WB_CSV_TABLE_NUMBER 64
-void wb_csv_table_format_number(double value, int shift, char *text);
+
+/* Files contain millimetres; the decimal point is moved in the text, not in binary, so that every
+ * double is read back bit for bit. Appends a double times 10^shift as the shortest decimal text
+ * that wb_csv_table_parse_number() turns back into the same double; nothing if it is not finite. */
+void wb_csv_table_append_number(struct wb_text *text, double value, int shift);
 /* False unless the whole text is one finite decimal number. */
 bool wb_csv_table_parse_number(const char *text, int shift, double *value);
 
 /* --- files --- */
+
+/* Cuts the next line off a text, without its end, and counts it; NULL at the end of the text. */
+char *wb_csv_table_line(struct wb_csv_table *table, char **text);
 
 /* Reads a table from a folder; a missing file is an empty table. `path` of the table is set during
  * the call. */

@@ -350,7 +350,7 @@ static const struct column row_columns[] = {
 
 /* Files of testing machines may have no time; the other columns are the same. */
 static void columns_of(const struct wb_test_info *info,
-                       struct column columns[sizeof row_columns / sizeof row_columns[0]])
+                       struct column columns[WB_COUNT(row_columns)])
 {
     memcpy(columns, row_columns, sizeof row_columns);
     if (info->kind != WB_TEST_CANTILEVER)
@@ -382,16 +382,12 @@ static enum wb_status append_field(struct wb_text *text, const struct column *co
         memcpy(&phase, member, sizeof phase);
         wb_text_append(text, "%s", wb_trial_phase_name(phase));
     } else {
-        char number[WB_CSV_TABLE_NUMBER];
         double value;
         memcpy(&value, member, sizeof value);
-        if (isfinite(value)) {
-            wb_csv_table_format_number(value, column->shift, number);
-            wb_text_append_bytes(text, number, strlen(number));
-        } else if (column->kind == KIND_NUMBER) {
+        if (!isfinite(value) && column->kind == KIND_NUMBER)
             return wb_fail(WB_ERR_ARGUMENT, "row %zu of a dataset has no %s", index + 1,
                            column->name);
-        }
+        wb_csv_table_append_number(text, value, column->shift);
     }
     return WB_OK;
 }
@@ -439,7 +435,7 @@ static enum wb_status format_tables(const struct wb_dataset *dataset, struct wb_
         wb_text_append(rows, "# virtual rig\n");
         wb_text_append(shapes, "# virtual rig\n");
     }
-    struct column columns[sizeof row_columns / sizeof row_columns[0]];
+    struct column columns[WB_COUNT(row_columns)];
     columns_of(&dataset->info, columns);
     WB_TRY(append_table(rows, columns, dataset->rows, dataset->n_rows, sizeof *dataset->rows));
     return append_table(shapes, shape_columns, dataset->shape_rows, dataset->n_shape_rows,
@@ -450,40 +446,11 @@ static enum wb_status format_tables(const struct wb_dataset *dataset, struct wb_
 
 /* A table that is being read: its lines, and the column of each field. */
 struct reader {
-    const char *path;
-    char *next, *end;
-    int line;
+    struct wb_csv_table table; /* its path, line and reason */
+    char *text;                /* not read yet */
     int n_fields;
     const struct column *fields[MAX_COLUMNS]; /* NULL: unknown column, skipped */
-    struct wb_reason *why;                    /* NULL: failures are logged */
 };
-
-/* The next line without its end, terminated in place; NULL at the end of the text. */
-static char *next_line(struct reader *reader)
-{
-    if (reader->next >= reader->end)
-        return NULL;
-    char *const line = reader->next;
-    char *const newline = memchr(line, '\n', (size_t)(reader->end - line));
-    char *stop = newline ? newline : reader->end;
-    reader->next = newline ? newline + 1 : reader->end;
-    if (stop > line && stop[-1] == '\r')
-        stop--;
-    *stop = '\0';
-    reader->line++;
-    return line;
-}
-
-/* Cuts the next field off a line; *rest is NULL after the last. */
-static char *next_field(char **rest)
-{
-    char *const field = *rest;
-    char *const comma = strchr(field, ',');
-    if (comma)
-        *comma = '\0';
-    *rest = comma ? comma + 1 : NULL;
-    return field;
-}
 
 static const struct column *find_column(const struct column *columns, const char *name)
 {
@@ -501,29 +468,27 @@ static enum wb_status check_columns(const struct reader *reader, const struct co
         for (int i = 0; i < reader->n_fields; i++)
             count += reader->fields[i] == column;
         if (count == 0 && column->kind != KIND_OPTIONAL && column->kind != KIND_EXTRA)
-            return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: no column '%s'", reader->path,
-                              reader->line, column->name);
+            return wb_csv_table_fail(&reader->table, "no column '%s'", column->name);
         if (count > 1)
-            return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: column '%s' appears twice",
-                              reader->path, reader->line, column->name);
+            return wb_csv_table_fail(&reader->table, "column '%s' appears twice", column->name);
     }
     return WB_OK;
 }
 
 static enum wb_status read_header(struct reader *reader, const struct column *columns)
 {
-    char *rest = next_line(reader);
-    while (rest && *rest == '#')
-        rest = next_line(reader);
+    char *rest;
+    do
+        rest = wb_csv_table_line(&reader->table, &reader->text);
+    while (rest && *rest == '#');
     if (!rest)
-        return wb_fail_to(reader->why, WB_ERR_FORMAT,
-                          "%s:%d: empty file, expected a line of column names", reader->path,
-                          reader->line + 1);
+        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
+                          "%s:%d: empty file, expected a line of column names", reader->table.path,
+                          reader->table.line + 1);
     while (rest) {
-        const char *const name = next_field(&rest);
+        const char *const name = strsep(&rest, ",");
         if (reader->n_fields == MAX_COLUMNS)
-            return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: more than %d columns",
-                              reader->path, reader->line, MAX_COLUMNS);
+            return wb_csv_table_fail(&reader->table, "more than %d columns", MAX_COLUMNS);
         reader->fields[reader->n_fields++] = find_column(columns, name);
     }
     return check_columns(reader, columns);
@@ -568,8 +533,8 @@ static enum wb_status parse_field(const struct reader *reader, const struct colu
             return WB_OK;
         }
     }
-    return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: %s: expected %s, not '%.40s'",
-                      reader->path, reader->line, column->name, expected, text);
+    return wb_csv_table_fail(&reader->table, "%s: expected %s, not '%.40s'", column->name, expected,
+                             text);
 }
 
 static enum wb_status parse_line(const struct reader *reader, char *line, void *row)
@@ -577,26 +542,24 @@ static enum wb_status parse_line(const struct reader *reader, char *line, void *
     char *rest = line;
     for (int i = 0; i < reader->n_fields; i++) {
         if (!rest)
-            return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: %d fields, expected %d",
-                              reader->path, reader->line, i, reader->n_fields);
-        const char *const field = next_field(&rest);
+            return wb_csv_table_fail(&reader->table, "%d fields, expected %d", i, reader->n_fields);
+        const char *const field = strsep(&rest, ",");
         if (reader->fields[i])
             WB_TRY(parse_field(reader, reader->fields[i], field, row));
     }
     if (rest)
-        return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s:%d: more than %d fields", reader->path,
-                          reader->line, reader->n_fields);
+        return wb_csv_table_fail(&reader->table, "more than %d fields", reader->n_fields);
     return WB_OK;
 }
 
 static enum wb_status start_reading(struct reader *reader, const char *path, char *text, size_t n,
                                     const struct column *columns, struct wb_reason *why)
 {
-    *reader = (struct reader){.path = path, .next = text, .end = text + n, .why = why};
+    *reader = (struct reader){.table = {.path = path, .why = why}, .text = text};
     const char *const zero = memchr(text, '\0', n);
     if (zero)
-        return wb_fail_to(reader->why, WB_ERR_FORMAT, "%s: byte 0 at offset %td: not a text file",
-                          path, zero - text);
+        return wb_fail_to(why, WB_ERR_FORMAT, "%s: byte 0 at offset %td: not a text file", path,
+                          zero - text);
     return read_header(reader, columns);
 }
 
@@ -605,10 +568,10 @@ enum wb_status wb_dataset_parse_rows(struct wb_dataset *dataset, const char *pat
 {
     struct reader reader;
     char *line;
-    struct column columns[sizeof row_columns / sizeof row_columns[0]];
+    struct column columns[WB_COUNT(row_columns)];
     columns_of(&dataset->info, columns);
     WB_TRY(start_reading(&reader, path, text, n, columns, why));
-    while ((line = next_line(&reader))) {
+    while ((line = wb_csv_table_line(&reader.table, &reader.text))) {
         struct wb_row row = {.t = (double)NAN,
                              .tension = (double)NAN,
                              .stage = (double)NAN,
@@ -626,7 +589,7 @@ enum wb_status wb_dataset_parse_shapes(struct wb_dataset *dataset, const char *p
     struct reader reader;
     char *line;
     WB_TRY(start_reading(&reader, path, text, n, shape_columns, why));
-    while ((line = next_line(&reader))) {
+    while ((line = wb_csv_table_line(&reader.table, &reader.text))) {
         struct wb_shape_row row = {.z = (double)NAN};
         WB_TRY(parse_line(&reader, line, &row));
         wb_dataset_add_shape_row(dataset, &row);

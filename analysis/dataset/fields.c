@@ -99,10 +99,9 @@ const struct wb_field *wb_fields_find(const struct wb_fields *fields, const char
 
 static void append_number(struct wb_text *text, double value, int shift)
 {
-    char rounded[WB_CSV_TABLE_NUMBER], number[WB_CSV_TABLE_NUMBER];
+    char rounded[WB_CSV_TABLE_NUMBER];
     snprintf(rounded, sizeof rounded, "%.*e", DIGITS - 1, value);
-    wb_csv_table_format_number(strtod(rounded, NULL), shift, number);
-    wb_text_append_bytes(text, number, strlen(number));
+    wb_csv_table_append_number(text, strtod(rounded, NULL), shift);
 }
 
 static enum wb_status append_field(struct wb_text *text, const struct wb_field *field)
@@ -153,7 +152,6 @@ enum wb_status wb_fields_write(const struct wb_fields *fields, const char *folde
 /* --- reading --- */
 
 struct reader {
-    struct wb_csv_table table;
     struct wb_fields *fields;
     int capacity; /* faces of the last field */
     int due;      /* node of a face that comes next */
@@ -212,23 +210,21 @@ static bool has_field(const struct wb_fields *fields, const struct row *row)
 
 /* The rows of a field are consecutive, face by face and node by node. `expected` is the next node,
  * 0 where a face or a field may begin. */
-static enum wb_status take_row(struct reader *reader, const struct row *row, int expected)
+static enum wb_status take_row(struct reader *reader, const struct wb_csv_table *table,
+                               const struct row *row, int expected)
 {
     struct wb_fields *const fields = reader->fields;
     struct wb_field *field = fields->n > 0 ? &fields->items[fields->n - 1] : NULL;
     const bool same = field && strcmp(field->state, row->state) == 0 &&
                       (isnan(field->x) ? isnan(row->x) : field->x == row->x);
     if (expected != row->node || (expected > 0 && !same))
-        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                          "%s:%d: node: expected node %d of a face, not %d of %s",
-                          reader->table.path, reader->table.line, expected, row->node,
-                          same ? "it" : "another field");
+        return wb_csv_table_fail(table, "node: expected node %d of a face, not %d of %s", expected,
+                                 row->node, same ? "it" : "another field");
     if (expected == 0 && !same) {
         if (has_field(fields, row))
-            return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                              "%s:%d: section: this field of state %s appears twice",
-                              reader->table.path, reader->table.line, row->state);
-        WB_TRY(wb_fields_add(fields, row->state, row->x, 1, &field, reader->table.why));
+            return wb_csv_table_fail(table, "section: this field of state %s appears twice",
+                                     row->state);
+        WB_TRY(wb_fields_add(fields, row->state, row->x, 1, &field, table->why));
         reader->capacity = 1;
     } else if (expected == 0) {
         add_face(reader, field);
@@ -236,9 +232,7 @@ static enum wb_status take_row(struct reader *reader, const struct row *row, int
 
     struct wb_field_face *const face = &field->faces[field->n_faces - 1];
     if (row->face != field->n_faces - 1 || (expected > 0 && row->part != face->part))
-        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                          "%s:%d: face: expected face %d in one part", reader->table.path,
-                          reader->table.line, field->n_faces - 1);
+        return wb_csv_table_fail(table, "face: expected face %d in one part", field->n_faces - 1);
     face->part = row->part;
     set_values(&face->node[row->node], row->values);
     return WB_OK;
@@ -250,7 +244,7 @@ static enum wb_status take_fields(void *context, const struct wb_csv_table *tabl
     struct reader *const reader = context;
     struct row row;
     WB_TRY(parse_row(table, fields, &row));
-    WB_TRY(take_row(reader, &row, reader->due));
+    WB_TRY(take_row(reader, table, &row, reader->due));
     reader->due = (reader->due + 1) % 8;
     return WB_OK;
 }
@@ -259,9 +253,7 @@ static enum wb_status check_end(void *context, const struct wb_csv_table *table)
 {
     const struct reader *const reader = context;
     if (reader->due != 0)
-        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                          "%s:%d: node: the last face ends before node %d", table->path,
-                          table->line, reader->due);
+        return wb_csv_table_fail(table, "node: the last face ends before node %d", reader->due);
     return WB_OK;
 }
 
@@ -269,13 +261,13 @@ enum wb_status wb_fields_read(struct wb_fields *fields, const char *folder, stru
 {
     struct wb_fields read = {0};
     struct reader reader = {.fields = &read};
-    reader.table = (struct wb_csv_table){.n_columns = COLUMNS,
-                                         .columns = column_names,
-                                         .take = take_fields,
-                                         .finish = check_end,
-                                         .context = &reader,
-                                         .why = why};
-    const enum wb_status status = wb_csv_table_read(&reader.table, folder, file_name);
+    struct wb_csv_table table = {.n_columns = COLUMNS,
+                                 .columns = column_names,
+                                 .take = take_fields,
+                                 .finish = check_end,
+                                 .context = &reader,
+                                 .why = why};
+    const enum wb_status status = wb_csv_table_read(&table, folder, file_name);
     if (status != WB_OK)
         wb_fields_release(&read);
     *fields = read;

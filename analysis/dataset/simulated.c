@@ -3,17 +3,23 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "analysis/dataset/csv_table.h"
 #include "base/units.h"
 #include "base/version.h"
 #include "fe/material/law_json.h"
 #include "fe/model/model_inputs.h"
 
+enum {
+    MM_SHIFT = 3 /* from m, as force_deflection.csv has it */
+};
+
 static const double stage_speed = 1e-3;  /* m/s, of the paper's stage */
 static const double shortest_row = 1e-3; /* s */
 
 void wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row, const double *before,
-                          const double *tip, const struct wb_simulated_shape *shape)
+                          const double *tip, const struct wb_simulated_shapes *shapes)
 {
+    double(*const places)[3] = shapes->places + dataset->n_rows * (size_t)shapes->n;
     row.t = 0.0;
     if (before) {
         const double way = hypot(hypot(tip[0] - before[0], tip[1] - before[1]), tip[2] - before[2]);
@@ -22,18 +28,27 @@ void wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row, const d
     row.stage = (double)NAN;
     row.tip_x = tip[0];
     wb_dataset_add_row(dataset, &row);
-    for (int k = 0; k < shape->n; k++) {
+    for (int k = 0; k < shapes->n; k++) {
         const struct wb_shape_row marker = {
             .t = row.t,
             .deflection = row.deflection,
             .marker = k,
-            .s = shape->s[k],
-            .x = shape->place[k][0],
-            .y = shape->place[k][1],
-            .z = shape->place[k][2],
+            .s = shapes->s[k],
+            .x = places[k][0],
+            .y = places[k][1],
+            .z = places[k][2],
         };
         wb_dataset_add_shape_row(dataset, &marker);
     }
+}
+
+void wb_simulated_append_energies(struct wb_text *text, const double *columns, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        wb_text_append(text, "%s", i == 0 ? "" : ",");
+        wb_csv_table_append_number(text, columns[i], i == 1 ? MM_SHIFT : 0);
+    }
+    wb_text_append(text, "\n");
 }
 
 void wb_simulated_describe_tool(struct wb_json *document)

@@ -7,6 +7,7 @@
 #define WB_ANALYSIS_DATASET_SIMULATED_H
 
 #include "analysis/dataset/dataset.h"
+#include "base/text.h"
 #include "fe/material/law.h"
 #include "fe/model/wire_model.h"
 #include "fe/trial/loading_steps.h"
@@ -54,18 +55,22 @@ void wb_simulated_fill_three_point(struct wb_dataset *dataset, const struct wb_t
                                    const struct wb_simulated_bending *bending,
                                    const struct wb_simulated_origin *origin);
 
-/* A shape in space: n places (m) at the arc lengths s (m). */
-struct wb_simulated_shape {
+/* Shapes in space of all rows, one after another: n places (m) at the arc lengths s (m) each. */
+struct wb_simulated_shapes {
     int n;
     const double *s;
-    double (*place)[3];
+    double (*places)[3];
 };
 
 /* Appends a row of a free tip at a place (m), and its shape as that of n markers. The bench time of
  * the row is that of the row before plus the tip's path from `before` (NULL: first row) at 1 mm/s,
  * at least 1 ms. Sets time and tip_x of the row. */
 void wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row, const double *before,
-                          const double *tip, const struct wb_simulated_shape *shape);
+                          const double *tip, const struct wb_simulated_shapes *shapes);
+
+/* Appends a row of energies.csv: time, deflection (in mm), and energies and ratios, empty where
+ * they are not finite. */
+void wb_simulated_append_energies(struct wb_text *text, const double *columns, size_t n);
 
 /* dataset.json's `tool`: this program. */
 void wb_simulated_describe_tool(struct wb_json *document);

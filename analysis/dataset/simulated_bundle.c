@@ -20,13 +20,9 @@ static const double poissons_ratio = 0.3; /* of the homogenised beam, as the pap
 
 static void add_rows(struct wb_dataset *dataset, const struct wb_bundle_result *result)
 {
+    const struct wb_simulated_shapes shapes = {result->n_shape, result->shape_s, result->shape};
     for (int i = 0; i < result->n_rows; i++) {
         const struct wb_bundle_row *const row = &result->rows[i];
-        const struct wb_simulated_shape shape = {
-            .n = result->n_shape,
-            .s = result->shape_s,
-            .place = result->shape + (size_t)i * (size_t)result->n_shape,
-        };
         const struct wb_row out = {
             .cycle = row->cycle,
             .phase = row->phase,
@@ -36,7 +32,7 @@ static void add_rows(struct wb_dataset *dataset, const struct wb_bundle_result *
             .tip_angle = row->tip_angle,
         };
         wb_simulated_add_row(dataset, out, i > 0 ? result->rows[i - 1].tip : NULL, row->tip,
-                             &shape);
+                             &shapes);
     }
 }
 
@@ -237,10 +233,6 @@ void wb_simulated_bundle_fill(struct wb_dataset *dataset, const struct wb_simula
 
 /* --- energies.csv --- */
 
-enum {
-    MM_SHIFT = 3 /* from m, as force_deflection.csv has it */
-};
-
 static const char header[] =
     "t_s,deflection_mm,model_time_s,external_J,kinetic_J,stored_J,plastic_J,contact_J,cohesive_J,"
     "friction_J,artificial_J,kinetic_over_internal,artificial_over_internal,imbalance_J\n";
@@ -264,13 +256,7 @@ static void append_row(struct wb_text *text, double t, const struct wb_bundle_ro
                               internal > 0.0 ? e->artificial / internal : (double)NAN,
                               wb_bundle_imbalance(e)};
 
-    for (size_t i = 0; i < sizeof columns / sizeof columns[0]; i++) {
-        char number[WB_CSV_TABLE_NUMBER] = "";
-        if (isfinite(columns[i]))
-            wb_csv_table_format_number(columns[i], i == 1 ? MM_SHIFT : 0, number);
-        wb_text_append(text, "%s%s", i == 0 ? "" : ",", number);
-    }
-    wb_text_append(text, "\n");
+    wb_simulated_append_energies(text, columns, WB_COUNT(columns));
 }
 
 enum wb_status wb_simulated_bundle_write_energies(const struct wb_dataset *dataset,

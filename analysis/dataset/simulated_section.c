@@ -12,16 +12,11 @@
 
 static void add_rows(struct wb_dataset *dataset, const struct wb_section_run *run)
 {
-    double before[3] = {0.0, 0.0, 0.0};
-
+    double before[3] = {0.0};
+    const struct wb_simulated_shapes shapes = {run->n_shape, run->shape_s, run->shape};
     for (int i = 0; i < run->n_rows; i++) {
         const struct wb_section_run_row *const row = &run->rows[i];
         const double tip[3] = {row->point.tip_x, row->point.deflection, 0.0};
-        const struct wb_simulated_shape shape = {
-            .n = run->n_shape,
-            .s = run->shape_s,
-            .place = run->shape + (size_t)i * (size_t)run->n_shape,
-        };
         const struct wb_row out = {
             .cycle = row->cycle,
             .phase = row->phase,
@@ -30,9 +25,8 @@ static void add_rows(struct wb_dataset *dataset, const struct wb_section_run *ru
             .force = row->force,
             .tip_angle = row->point.tip_angle,
         };
-        wb_simulated_add_row(dataset, out, i > 0 ? before : NULL, tip, &shape);
-        for (int k = 0; k < 3; k++)
-            before[k] = tip[k];
+        wb_simulated_add_row(dataset, out, i > 0 ? before : NULL, tip, &shapes);
+        memcpy(before, tip, sizeof before);
     }
 }
 
@@ -134,10 +128,6 @@ void wb_simulated_section_fill(struct wb_dataset *dataset,
 
 /* --- energies.csv --- */
 
-enum {
-    MM_SHIFT = 3 /* from m, as force_deflection.csv has it */
-};
-
 enum wb_status wb_simulated_section_write_energies(const struct wb_dataset *dataset,
                                                    const struct wb_simulated_section *section,
                                                    const char *folder)
@@ -155,12 +145,7 @@ enum wb_status wb_simulated_section_write_energies(const struct wb_dataset *data
     for (int i = 0; i < run->n_rows; i++) {
         double columns[2 + ENERGIES] = {dataset->rows[i].t, run->rows[i].point.deflection};
         list_energies(&run->rows[i].energies, columns + 2);
-        for (int k = 0; k < 2 + ENERGIES; k++) {
-            char number[WB_CSV_TABLE_NUMBER];
-            wb_csv_table_format_number(columns[k], k == 1 ? MM_SHIFT : 0, number);
-            wb_text_append(&text, "%s%s", k == 0 ? "" : ",", number);
-        }
-        wb_text_append(&text, "\n");
+        wb_simulated_append_energies(&text, columns, WB_COUNT(columns));
     }
     const enum wb_status status = wb_csv_table_write(folder, "energies.csv", &text);
     wb_text_release(&text);

@@ -19,13 +19,9 @@ static const char *const kind_names[] = {
 
 static void add_rows(struct wb_dataset *dataset, const struct wb_wire_run *run)
 {
+    const struct wb_simulated_shapes shapes = {run->n_shape, run->shape_s, run->shape};
     for (int i = 0; i < run->n_rows; i++) {
         const struct wb_wire_row *const row = &run->rows[i];
-        const struct wb_simulated_shape shape = {
-            .n = run->n_shape,
-            .s = run->shape_s,
-            .place = run->shape + (size_t)i * (size_t)run->n_shape,
-        };
         const struct wb_row out = {
             .cycle = row->cycle,
             .phase = row->phase,
@@ -34,7 +30,7 @@ static void add_rows(struct wb_dataset *dataset, const struct wb_wire_run *run)
             .force = row->force,
             .tip_angle = row->tip_angle,
         };
-        wb_simulated_add_row(dataset, out, i > 0 ? run->rows[i - 1].tip : NULL, row->tip, &shape);
+        wb_simulated_add_row(dataset, out, i > 0 ? run->rows[i - 1].tip : NULL, row->tip, &shapes);
     }
 }
 

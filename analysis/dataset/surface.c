@@ -97,7 +97,7 @@ void wb_surface_take(struct wb_surface *surface, const struct wb_bundle_fields *
 
 static enum wb_status append_node(struct wb_text *text, const struct wb_surface_node *node)
 {
-    char rounded[WB_CSV_TABLE_NUMBER], number[WB_CSV_TABLE_NUMBER];
+    char rounded[WB_CSV_TABLE_NUMBER];
 
     for (int i = 0; i < VALUES; i++) {
         const double exact = i < 3 ? node->position[i] : node->von_mises;
@@ -106,8 +106,8 @@ static enum wb_status append_node(struct wb_text *text, const struct wb_surface_
                            column_names[INTEGERS + i]);
         snprintf(rounded, sizeof rounded, i < 3 ? "%.6f" : "%.3e", exact);
         const double value = strtod(rounded, NULL);
-        wb_csv_table_format_number(value == 0.0 ? 0.0 : value, value_shifts[i], number);
-        wb_text_append(text, ",%s", number);
+        wb_text_append(text, ",");
+        wb_csv_table_append_number(text, value == 0.0 ? 0.0 : value, value_shifts[i]);
     }
     wb_text_append(text, "\n");
     return WB_OK;
@@ -143,7 +143,6 @@ enum wb_status wb_surface_write(const struct wb_surface *surface, const char *fo
 /* --- reading --- */
 
 struct reader {
-    struct wb_csv_table table;
     struct wb_surface *surface;
     int n_nodes; /* read so far of the last body */
     size_t capacity;
@@ -191,7 +190,7 @@ static bool has_extent(const struct wb_surface_body *body, int station)
 
 /* Checks that the last body is complete: at least two stations of at least three nodes (strip:
  * two), and no degenerate end, which could not be drawn. */
-static enum wb_status check_last(const struct reader *reader)
+static enum wb_status check_last(const struct reader *reader, const struct wb_csv_table *table)
 {
     if (reader->surface->n == 0)
         return WB_OK;
@@ -201,22 +200,22 @@ static enum wb_status check_last(const struct reader *reader)
         reader->n_nodes == body->n_along * body->n_around) {
         if (has_extent(body, 0) && has_extent(body, body->n_along - 1))
             return WB_OK;
-        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                          "%s:%d: body %d: all nodes of its first or last station coincide",
-                          reader->table.path, reader->table.line, reader->surface->n - 1);
+        return wb_csv_table_fail(table, "body %d: all nodes of its first or last station coincide",
+                                 reader->surface->n - 1);
     }
-    return wb_fail_to(
-        reader->table.why, WB_ERR_FORMAT,
-        "%s:%d: body %d has %d nodes: expected at least 2 stations with the same number of nodes, "
-        "at least %d",
-        reader->table.path, reader->table.line, reader->surface->n - 1, reader->n_nodes, least);
+    return wb_csv_table_fail(
+        table,
+        "body %d has %d nodes: expected at least 2 stations with the same number of nodes, at "
+        "least %d",
+        reader->surface->n - 1, reader->n_nodes, least);
 }
 
-static enum wb_status begin_body(struct reader *reader, const struct row *row)
+static enum wb_status begin_body(struct reader *reader, const struct wb_csv_table *table,
+                                 const struct row *row)
 {
     struct wb_surface *surface = reader->surface;
 
-    WB_TRY(check_last(reader));
+    WB_TRY(check_last(reader, table));
     surface->bodies =
         wb_memory_resize(surface->bodies, (size_t)surface->n + 1, sizeof *surface->bodies);
     surface->bodies[surface->n++] =
@@ -226,42 +225,31 @@ static enum wb_status begin_body(struct reader *reader, const struct row *row)
     return WB_OK;
 }
 
-static void append_to_body(struct reader *reader, struct wb_surface_body *body,
-                           const struct wb_surface_node *node)
-{
-    body->nodes = wb_memory_room(body->nodes, &reader->capacity, (size_t)reader->n_nodes + 1,
-                                 sizeof *body->nodes);
-    body->nodes[reader->n_nodes++] = *node;
-}
-
 /* Rows are sorted by body, station and node, without gaps. The number of nodes of the first
  * station applies to all stations of a body. */
-static enum wb_status take_row(struct reader *reader, const struct row *row)
+static enum wb_status take_row(struct reader *reader, const struct wb_csv_table *table,
+                               const struct row *row)
 {
     struct wb_surface *surface = reader->surface;
 
     if (row->body == surface->n)
-        WB_TRY(begin_body(reader, row));
+        WB_TRY(begin_body(reader, table, row));
     if (row->body != surface->n - 1)
-        return wb_fail_to(reader->table.why, WB_ERR_FORMAT, "%s:%d: body: expected %d next, not %d",
-                          reader->table.path, reader->table.line, surface->n, row->body);
+        return wb_csv_table_fail(table, "body: expected %d next, not %d", surface->n, row->body);
     struct wb_surface_body *body = &surface->bodies[row->body];
     if (row->is_tape != body->is_tape || row->closed != body->closed)
-        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                          "%s:%d: kind: differs from the first row of the body", reader->table.path,
-                          reader->table.line);
-    if (row->station == 0) {
+        return wb_csv_table_fail(table, "%s: differs from the first row of the body",
+                                 column_names[1]);
+    if (row->station == 0)
         body->n_around = row->node + 1;
-        body->n_along = 1;
-    } else {
-        body->n_along = row->station + 1;
-    }
+    body->n_along = row->station + 1;
     const long long place = (long long)row->station * body->n_around + row->node;
     if (row->node >= body->n_around || reader->n_nodes != place)
-        return wb_fail_to(reader->table.why, WB_ERR_FORMAT,
-                          "%s:%d: node: station %d, node %d is out of order", reader->table.path,
-                          reader->table.line, row->station, row->node);
-    append_to_body(reader, body, &row->at);
+        return wb_csv_table_fail(table, "node: station %d, node %d is out of order", row->station,
+                                 row->node);
+    body->nodes = wb_memory_room(body->nodes, &reader->capacity, (size_t)reader->n_nodes + 1,
+                                 sizeof *body->nodes);
+    body->nodes[reader->n_nodes++] = row->at;
     return WB_OK;
 }
 
@@ -272,13 +260,12 @@ static enum wb_status take_fields(void *context, const struct wb_csv_table *tabl
     struct row row;
 
     WB_TRY(parse_row(table, fields, &row));
-    return take_row(reader, &row);
+    return take_row(reader, table, &row);
 }
 
 static enum wb_status check_end(void *context, const struct wb_csv_table *table)
 {
-    (void)table;
-    return check_last(context);
+    return check_last(context, table);
 }
 
 enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder,
@@ -286,14 +273,13 @@ enum wb_status wb_surface_read(struct wb_surface *surface, const char *folder,
 {
     struct wb_surface read = {0};
     struct reader reader = {.surface = &read};
-
-    reader.table = (struct wb_csv_table){.n_columns = COLUMNS,
-                                         .columns = column_names,
-                                         .take = take_fields,
-                                         .finish = check_end,
-                                         .context = &reader,
-                                         .why = why};
-    const enum wb_status status = wb_csv_table_read(&reader.table, folder, file_name);
+    struct wb_csv_table table = {.n_columns = COLUMNS,
+                                 .columns = column_names,
+                                 .take = take_fields,
+                                 .finish = check_end,
+                                 .context = &reader,
+                                 .why = why};
+    const enum wb_status status = wb_csv_table_read(&table, folder, file_name);
     if (status != WB_OK)
         wb_surface_release(&read);
     *surface = read;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "analysis/dataset/csv_table.h"
+#include "analysis/dataset/csv_table_private.h"
 #include "analysis/dataset/dataset_private.h"
 #include "base/file.h"
 #include "base/log.h"
