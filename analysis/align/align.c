@@ -205,7 +205,7 @@ void wb_align_signals_release(struct wb_align_signals *signals)
 
 static void copy_signals(const struct wb_align *align, struct wb_align_signals *signals)
 {
-    const struct wb_align_reading *const readings = wb_align_readings(align);
+    const struct wb_align_reading *const readings = align->readings.items;
     const int up = align->rig.mocap.up == 'z' ? 2 : 1;
     for (size_t i = 0; i < align->cloud.n_frames; i++) {
         const double *const clamp = wb_markers_position(&align->tracks, i, 0);
@@ -221,8 +221,6 @@ static void copy_signals(const struct wb_align *align, struct wb_align_signals *
     signals->n_force = align->readings.n;
     signals->filter_delay = align->filter_delay;
     signals->filter_delay_uncertainty = align->filter_delay_uncertainty;
-    signals->camera_uncertainty = align->camera_uncertainty;
-    signals->time_scale = align->rig.time_scale;
 }
 
 static void keep_signals(const struct wb_align *align, struct wb_align_signals *signals)

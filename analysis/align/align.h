@@ -63,8 +63,6 @@ struct wb_align_signals {
                                   frame that shows the clamp's marker */
     double *force_t, *force;   /* s, N: raw readings; the filter's delay is removed */
     double filter_delay, filter_delay_uncertainty; /* s of bench time, from the rig file */
-    double camera_uncertainty;                     /* s of bench time; NaN unknown */
-    double time_scale;                             /* bench seconds per host second */
 };
 void wb_align_signals_release(struct wb_align_signals *signals); /* accepts a zeroed one */
 

@@ -45,18 +45,12 @@ static double settle_time(const struct wb_align *align)
     return fmax(SETTLE_DELAYS * align->filter_delay, LEAST_SETTLE);
 }
 
-static double reading_period(const struct wb_align *align)
-{
-    const struct wb_align_reading *const r = wb_align_readings(align);
-    const size_t n = align->readings.n;
-    return n > 1 && r[n - 1].t > r[0].t ? (r[n - 1].t - r[0].t) / (double)(n - 1) : 1.0;
-}
-
 /* Standard deviation of a row's reading: a straight line fitted to n readings has, at its middle,
  * that of their mean. */
 static double row_noise(const struct wb_align *align)
 {
-    const double in_row = fmax(1.0 / align->settings.row_rate / reading_period(align), 5.0);
+    const double in_row =
+        fmax(1.0 / align->settings.row_rate / wb_align_reading_period(align), 5.0);
     return align->reading_noise / sqrt(in_row);
 }
 
@@ -147,19 +141,14 @@ static void add_zero(struct wb_align *align, size_t first, size_t last, bool beg
     };
 }
 
-static double tare_time(const struct wb_align *align)
-{
-    return wb_seconds_from_ns(align->tare_ns - align->zero_ns) * align->rig.time_scale;
-}
-
 /* Finds the zero-load stretches; the tare is one too. Rows before it are not used: the specimen may
  * have been handled. A stretch within 5 s of the tare is merged with it, weighted by their
  * variances. */
 static void find_zeros(struct wb_align *align)
 {
-    const double tare_t = tare_time(align);
+    const double tare_t = wb_align_bench_time(align, align->tare_ns);
     align->zeros[0] = (struct wb_align_zero){
-        .t = tare_t - 0.5 * (double)align->tare_samples * reading_period(align),
+        .t = tare_t - 0.5 * (double)align->tare_samples * wb_align_reading_period(align),
         .deviation = align->reading_noise / sqrt((double)align->tare_samples),
     };
     align->n_zeros = 1;
@@ -201,10 +190,10 @@ static double zero_at(const struct wb_align *align, double t)
         next++;
     if (next == 0)
         return zeros[0].value;
+    const struct wb_align_zero *const a = &zeros[next - 1];
     if (next == align->n_zeros)
-        return zeros[next - 1].value;
-    const double part = (t - zeros[next - 1].t) / (zeros[next].t - zeros[next - 1].t);
-    return (1.0 - part) * zeros[next - 1].value + part * zeros[next].value;
+        return a->value;
+    return wb_fit_between(t, a->t, a->value, zeros[next].t, zeros[next].value);
 }
 
 /* Fastest drift between two stretches of the recording, N/s. */
@@ -277,8 +266,7 @@ static void set_tension(struct wb_align *align)
     const double least = fmax(3.0 * row_noise(align), 1e-3 * align->largest);
     for (size_t i = 0; i < align->n_rows; i++) {
         struct wb_align_row *const row = &align->rows[i];
-        row->drift = zero_at(align, row->t);
-        row->tension = row->reading - row->drift;
+        row->tension = row->reading - zero_at(align, row->t);
         row->vertical = row->tension * row->lean_cosine;
         const bool without_tension = align->rig.strand.length > 0.0 && row->tension < least;
         if (is_slack(align, row) || without_tension)

@@ -7,8 +7,6 @@
 #include "analysis/align/align_private.h"
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "align"
-
 /* End of a hold, bench time; infinite if the hold did not end. */
 static double end_of(const struct wb_align *align, const struct wb_bend_hold_recorded *hold)
 {

@@ -38,8 +38,6 @@
 #include "base/memory.h"
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "align"
-
 /* Rows with the tip this near to zero deflection (m) are used; slopes are small there. */
 #define NEAR_ZERO (1.5 * WB_MM)
 /* Standard uncertainty of a marker's offset from the axis, m, where the specimen file gives

@@ -23,7 +23,6 @@
 #include "base/status.h"
 #include "daq/protocol/clock.h"
 #include "daq/protocol/rig.h"
-#include "daq/protocol/sample.h"
 #include "daq/protocol/specimen.h"
 #include "daq/recording/recording.h"
 #include "daq/recording/replay.h"
@@ -63,7 +62,6 @@ struct wb_align_row {
     double lean_cosine;             /* of the strand against the vertical; 1 without a strand */
     double reading;                 /* N, less the tare */
     double commanded;               /* m; NaN unknown */
-    double drift;                   /* N, zero drift subtracted */
     double tension, vertical, force;
     int cycle;
     enum wb_phase phase;
@@ -151,10 +149,6 @@ struct wb_align {
     double speed; /* m/s of bench time: typical deflection rate of the loadings */
 };
 
-/* The items of `readings` and `reports`; they belong to the lists. */
-struct wb_align_reading *wb_align_readings(const struct wb_align *align);
-struct wb_align_report_point *wb_align_reports(const struct wb_align *align);
-
 /* The steps of the alignment, in their order. Each puts its failure into align->why. */
 WB_MUST_CHECK enum wb_status wb_align_load(struct wb_align *align, const char *path);
 WB_MUST_CHECK enum wb_status wb_align_times(struct wb_align *align);
@@ -174,6 +168,9 @@ wb_align_run_from(struct wb_dataset *dataset, const struct wb_align_settings *se
 
 /* Bench time of a host time, s. */
 double wb_align_bench_time(const struct wb_align *align, int64_t host_ns);
+
+/* Mean time between two readings, s; 1 s if there is only one. */
+double wb_align_reading_period(const struct wb_align *align);
 
 /* Whether the operator held the test at any time between two bench times. */
 bool wb_align_is_held(const struct wb_align *align, double from, double to);

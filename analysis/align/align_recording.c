@@ -30,16 +30,6 @@ void wb_align_list_add(struct wb_align_list *list, const void *item, size_t size
     memcpy((char *)list->items + list->n++ * size, item, size);
 }
 
-struct wb_align_reading *wb_align_readings(const struct wb_align *align)
-{
-    return align->readings.items;
-}
-
-struct wb_align_report_point *wb_align_reports(const struct wb_align *align)
-{
-    return align->reports.items;
-}
-
 /* --- samples --- */
 
 static void take_load(void *context, const struct wb_load_sample *sample)
@@ -134,13 +124,14 @@ static void note_loss(struct wb_align *align, struct wb_json *losses, const char
 /* Called before frames are sorted and readings are mapped to a line. */
 static void note_losses(struct wb_align *align)
 {
+    const struct wb_align_reading *const items = align->readings.items;
     struct wb_loss frames, readings;
     wb_loss_init(&frames, true, 0.0);
     for (size_t i = 0; i < align->cloud.n_frames; i++)
         wb_loss_add(&frames, align->cloud.frames[i].t_device);
     wb_loss_init(&readings, false, 0.0);
     for (size_t i = 0; i < align->readings.n; i++)
-        wb_loss_add(&readings, wb_seconds_from_ns(wb_align_readings(align)[i].t_ns));
+        wb_loss_add(&readings, wb_seconds_from_ns(items[i].t_ns));
     struct wb_json *const losses = wb_json_set_object(align->checks, "losses");
     note_loss(align, losses, "frames", &frames);
     note_loss(align, losses, "readings", &readings);
@@ -489,6 +480,13 @@ double wb_align_bench_time(const struct wb_align *align, int64_t host_ns)
     return wb_seconds_from_ns(host_ns - align->zero_ns) * align->rig.time_scale;
 }
 
+double wb_align_reading_period(const struct wb_align *align)
+{
+    const struct wb_align_reading *const r = align->readings.items;
+    const size_t n = align->readings.n;
+    return n > 1 && r[n - 1].t > r[0].t ? (r[n - 1].t - r[0].t) / (double)(n - 1) : 1.0;
+}
+
 /* --- the cameras --- */
 
 struct stamps {
@@ -546,11 +544,17 @@ static size_t order_frames(struct wb_align *align, bool on_probe_clock)
     return dropped;
 }
 
-static void use_arrivals(struct wb_align *align)
+/* Uses the host's times of the frames: those of the file from which they were imported, or their
+ * arrivals. */
+static void use_host_times(struct wb_align *align)
 {
-    const struct wb_point_frame *const frames = align->cloud.frames;
     for (size_t i = 0; i < align->cloud.n_frames; i++)
-        align->frame_t[i] = wb_align_bench_time(align, frames[i].t_ns);
+        align->frame_t[i] = wb_align_bench_time(align, align->cloud.frames[i].t_ns);
+    if (align->camera_times_given) {
+        align->method = "times of the file";
+        align->camera_uncertainty = align->import_uncertainty * align->rig.time_scale;
+        return;
+    }
     align->method = "arrival";
     align->camera_uncertainty = (double)NAN;
     wb_align_warn(align, "frames carry no stamp of the server: their arrival times are used, with "
@@ -657,14 +661,6 @@ static void drop_backward(struct wb_align *align)
     align->cloud.n_frames = n;
 }
 
-static void use_file_times(struct wb_align *align)
-{
-    for (size_t i = 0; i < align->cloud.n_frames; i++)
-        align->frame_t[i] = wb_align_bench_time(align, align->cloud.frames[i].t_ns);
-    align->method = "times of the file";
-    align->camera_uncertainty = align->import_uncertainty * align->rig.time_scale;
-}
-
 static enum wb_status map_cameras(struct wb_align *align)
 {
     bool on_probe_clock;
@@ -681,10 +677,8 @@ static enum wb_status map_cameras(struct wb_align *align)
     };
     align->frame_t = wb_memory_new(n, sizeof *align->frame_t);
     enum wb_status status = WB_OK;
-    if (align->camera_times_given) {
-        use_file_times(align);
-    } else if (!has_stamps) {
-        use_arrivals(align);
+    if (align->camera_times_given || !has_stamps) {
+        use_host_times(align);
     } else {
         for (size_t i = 0; i < n; i++) {
             stamps.device[i] = stamp_of(&align->cloud.frames[i], on_probe_clock);
@@ -709,7 +703,7 @@ static enum wb_status map_cameras(struct wb_align *align)
 static enum wb_status map_stream(struct wb_align *align, int64_t *host_ns, double *number,
                                  size_t *n_used)
 {
-    struct wb_align_reading *const readings = wb_align_readings(align);
+    struct wb_align_reading *const readings = align->readings.items;
     const size_t n = align->readings.n;
     size_t starts[WB_ALIGN_MAX_SEGMENTS];
     for (size_t i = 0; i < n; i++) {
@@ -736,7 +730,7 @@ static enum wb_status map_stream(struct wb_align *align, int64_t *host_ns, doubl
 
 static void describe_load(struct wb_align *align, bool by_arrival, size_t n_segments)
 {
-    const struct wb_align_reading *const readings = wb_align_readings(align);
+    const struct wb_align_reading *const readings = align->readings.items;
     const size_t n = align->readings.n;
     const double span = n > 1 ? readings[n - 1].t - readings[0].t : 0.0;
     struct wb_json *const object = wb_json_set_object(align->checks, "load_cell_stream");
@@ -755,7 +749,7 @@ static void describe_load(struct wb_align *align, bool by_arrival, size_t n_segm
 
 static void drop_invalid_readings(struct wb_align *align)
 {
-    struct wb_align_reading *const readings = wb_align_readings(align);
+    struct wb_align_reading *const readings = align->readings.items;
     size_t n = 0;
     for (size_t i = 0; i < align->readings.n; i++) {
         if (!isfinite(readings[i].force) || (n > 0 && readings[i].t < readings[n - 1].t))
@@ -767,7 +761,7 @@ static void drop_invalid_readings(struct wb_align *align)
 
 static enum wb_status map_load(struct wb_align *align)
 {
-    struct wb_align_reading *const readings = wb_align_readings(align);
+    struct wb_align_reading *const readings = align->readings.items;
     const size_t n = align->readings.n;
     /* Times from a file, and arrivals of readings that were requested one by one or of which many
      * were lost, are used as they are. */
@@ -807,7 +801,7 @@ static enum wb_status map_load(struct wb_align *align)
 
 static void map_stage(struct wb_align *align)
 {
-    struct wb_align_report_point *const reports = wb_align_reports(align);
+    struct wb_align_report_point *const reports = align->reports.items;
     for (size_t i = 0; i < align->reports.n; i++)
         reports[i].t = wb_align_bench_time(align, reports[i].t_ns);
 }
@@ -815,7 +809,8 @@ static void map_stage(struct wb_align *align)
 enum wb_status wb_align_times(struct wb_align *align)
 {
     /* Without events the test starts where both streams have data. */
-    const int64_t load_ns = wb_align_readings(align)[0].t_ns;
+    const struct wb_align_reading *const readings = align->readings.items;
+    const int64_t load_ns = readings[0].t_ns;
     const int64_t mocap_ns = align->cloud.frames[0].t_ns;
     align->zero_ns = load_ns > mocap_ns ? load_ns : mocap_ns;
     if (align->has_start)

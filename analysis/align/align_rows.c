@@ -112,7 +112,7 @@ enum wb_status wb_align_markers(struct wb_align *align)
 /* Index of the first reading at or after t. */
 static size_t first_reading_at(const struct wb_align *align, double t)
 {
-    const struct wb_align_reading *const readings = wb_align_readings(align);
+    const struct wb_align_reading *const readings = align->readings.items;
     return wb_fit_first_at(&readings->t, sizeof *readings, align->readings.n, t);
 }
 
@@ -120,7 +120,7 @@ static size_t first_reading_at(const struct wb_align *align, double t)
  * between the two neighbours. False if a neighbour is farther away than the longest gap. */
 static bool reading_at(const struct wb_align *align, double t, double half, double *reading)
 {
-    const struct wb_align_reading *const r = wb_align_readings(align);
+    const struct wb_align_reading *const r = align->readings.items;
     const size_t next = first_reading_at(align, t);
     const double longest = align->settings.longest_gap;
     if (next == 0 || next == align->readings.n || t - r[next - 1].t > longest ||
@@ -142,9 +142,8 @@ static bool reading_at(const struct wb_align *align, double t, double half, doub
         *reading = (sum_tt * sum - sum_t * sum_tf) / determinant;
         return true;
     }
-    const double span = r[next].t - r[next - 1].t;
-    const double part = span > 0.0 ? (t - r[next - 1].t) / span : 0.0;
-    *reading = (1.0 - part) * r[next - 1].force + part * r[next].force - align->tare;
+    *reading =
+        wb_fit_between(t, r[next - 1].t, r[next - 1].force, r[next].t, r[next].force) - align->tare;
     return true;
 }
 
@@ -289,12 +288,7 @@ enum wb_status wb_align_rows(struct wb_align *align)
 {
     const size_t n_frames = align->cloud.n_frames;
     const double rate = align->settings.row_rate;
-    const size_t n_readings = align->readings.n;
-    const struct wb_align_reading *const readings = wb_align_readings(align);
-    const double period =
-        n_readings > 1 ? (readings[n_readings - 1].t - readings[0].t) / (double)(n_readings - 1)
-                       : 0.0;
-    const double half = fmax(0.5 / rate, 2.5 * period);
+    const double half = fmax(0.5 / rate, 2.5 * wb_align_reading_period(align));
     align->rows = wb_memory_new(n_frames, sizeof *align->rows);
     for (size_t first = 0, last; first < n_frames; first = last) {
         const double bin = floor(align->frame_t[first] * rate);
@@ -341,38 +335,22 @@ static void find_range(const struct wb_align *align, double *low, double *high)
     }
 }
 
-/* Marks rows first..last-1. */
-static void mark(struct wb_align *align, size_t first, size_t last, int cycle, enum wb_phase phase)
-{
-    for (size_t i = first; i < last; i++) {
-        align->rows[i].cycle = cycle;
-        align->rows[i].phase = phase;
-    }
-}
-
-/* Follows the travel up and down: `extreme` is the farthest row since the last turning point, and
- * becomes a turning point once the travel has come back by `threshold`. */
+/* A branch of the travel ends once the travel has come back by `threshold`. */
 static void cut_cycles(struct wb_align *align, double threshold)
 {
-    const struct wb_align_row *const rows = align->rows;
-    size_t from = 0, extreme = 0;
-    bool loading = true;
-    int cycle = 1;
-    for (size_t i = 0; i < align->n_rows; i++) {
-        const double ahead =
-            loading ? rows[i].travel - rows[extreme].travel : rows[extreme].travel - rows[i].travel;
-        if (ahead >= 0.0) {
-            extreme = i;
-        } else if (-ahead > threshold) {
-            mark(align, from, extreme + 1, cycle, loading ? WB_PHASE_LOAD : WB_PHASE_UNLOAD);
-            from = extreme + 1;
-            extreme = i;
-            cycle += !loading;
-            loading = !loading;
+    struct wb_align_row *const rows = align->rows;
+    bool loading = false;
+    align->n_cycles = 0;
+    for (size_t i = 0; i < align->n_rows;) {
+        loading = !loading;
+        align->n_cycles += loading;
+        const size_t end = wb_fit_branch_end(&rows->travel, sizeof *rows, align->n_rows, i,
+                                             loading ? threshold : -threshold);
+        for (; i < end; i++) {
+            rows[i].cycle = align->n_cycles;
+            rows[i].phase = loading ? WB_PHASE_LOAD : WB_PHASE_UNLOAD;
         }
     }
-    mark(align, from, align->n_rows, cycle, loading ? WB_PHASE_LOAD : WB_PHASE_UNLOAD);
-    align->n_cycles = cycle;
 }
 
 /* Typical speed of the clamp on the way down: the median over the moving rows. */
@@ -411,7 +389,7 @@ enum wb_status wb_align_cycles(struct wb_align *align)
 /* --- commanded against measured --- */
 
 struct pair {
-    double t, commanded, measured, speed; /* s, m, m, m/s */
+    double commanded, measured, speed; /* m, m, m/s */
 };
 
 /* Height of the clamp at bench time t; false in a gap. */
@@ -421,9 +399,8 @@ static bool clamp_at(const struct wb_align *align, double t, double *height)
     const size_t n = align->cloud.n_frames, next = wb_fit_first_at(times, sizeof *times, n, t);
     if (next == 0 || next == n || times[next] - times[next - 1] > align->settings.longest_gap)
         return false;
-    const double part = (t - times[next - 1]) / (times[next] - times[next - 1]);
-    *height = (1.0 - part) * wb_frame_clamp_height(&align->frame, next - 1) +
-              part * wb_frame_clamp_height(&align->frame, next);
+    *height = wb_fit_between(t, times[next - 1], wb_frame_clamp_height(&align->frame, next - 1),
+                             times[next], wb_frame_clamp_height(&align->frame, next));
     return isfinite(*height);
 }
 
@@ -442,11 +419,8 @@ static double host_lateness(const struct wb_align *align, int64_t t_ns)
             high = middle;
     }
     double late = 0.0;
-    for (size_t i = low > 0 ? low - 1 : 0; i <= low && i < align->cloud.n_frames; i++) {
-        const double arrival =
-            wb_seconds_from_ns(frames[i].t_ns - align->zero_ns) * align->rig.time_scale;
-        late = fmax(late, arrival - align->frame_t[i]);
-    }
+    for (size_t i = low > 0 ? low - 1 : 0; i <= low && i < align->cloud.n_frames; i++)
+        late = fmax(late, wb_align_bench_time(align, frames[i].t_ns) - align->frame_t[i]);
     return late;
 }
 
@@ -454,7 +428,7 @@ static double host_lateness(const struct wb_align *align, int64_t t_ns)
  * downwards from their first value. */
 static size_t make_pairs(const struct wb_align *align, struct pair *pairs)
 {
-    const struct wb_align_report_point *const reports = wb_align_reports(align);
+    const struct wb_align_report_point *const reports = align->reports.items;
     const double begin = align->rows[0].t, end = align->rows[align->n_rows - 1].t;
     size_t n = 0;
     for (size_t i = 0; i < align->reports.n; i++) {
@@ -466,7 +440,6 @@ static size_t make_pairs(const struct wb_align *align, struct pair *pairs)
             !clamp_at(align, reports[i].t + SPEED_WINDOW, &after))
             continue;
         pairs[n++] = (struct pair){
-            .t = reports[i].t,
             .commanded = reports[i].travel,
             .measured = -at,
             .speed = (before - after) / (2.0 * SPEED_WINDOW),
@@ -620,7 +593,7 @@ static void describe_stage(struct wb_align *align, const struct stage_fit *fit, 
 /* Commanded travel at the rows' times, from the reports, their lag removed. */
 static void command_rows(struct wb_align *align, double lag, double zero)
 {
-    const struct wb_align_report_point *const reports = wb_align_reports(align);
+    const struct wb_align_report_point *const reports = align->reports.items;
     const double mean_period =
         (reports[align->reports.n - 1].t - reports[0].t) / (double)(align->reports.n - 1);
     const double longest = fmax(1.0, 6.0 * mean_period);
@@ -630,20 +603,18 @@ static void command_rows(struct wb_align *align, double lag, double zero)
         const double t = row->t + lag;
         while (next < align->reports.n && reports[next].t < t)
             next++;
-        if (next == 0 || next == align->reports.n ||
-            reports[next].t - reports[next - 1].t > longest)
+        if (next == 0 || next == align->reports.n)
             continue;
-        const double span = reports[next].t - reports[next - 1].t;
-        const double part = span > 0.0 ? (t - reports[next - 1].t) / span : 0.0;
-        row->commanded =
-            (1.0 - part) * reports[next - 1].travel + part * reports[next].travel - zero;
+        const struct wb_align_report_point *const a = &reports[next - 1], *const b = &reports[next];
+        if (b->t - a->t <= longest)
+            row->commanded = wb_fit_between(t, a->t, a->travel, b->t, b->travel) - zero;
     }
 }
 
 /* Commanded position where the test began: the last report before, or the first. */
 static double commanded_zero(const struct wb_align *align)
 {
-    const struct wb_align_report_point *const reports = wb_align_reports(align);
+    const struct wb_align_report_point *const reports = align->reports.items;
     size_t i = 0;
     while (i + 1 < align->reports.n && reports[i + 1].t <= 0.0)
         i++;

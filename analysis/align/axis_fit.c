@@ -4,8 +4,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-#define WB_LOG_DOMAIN "shape"
-
 /* Intervals of the quadrature along the wire, two Gauss points each. */
 #define INTERVALS 24
 #define MAX_ITERATIONS 30

@@ -270,7 +270,7 @@ enum wb_status wb_frame_fit(struct wb_bench_frame *frame, const struct wb_marker
                             struct wb_reason *why)
 {
     memset(frame, 0, sizeof *frame);
-    struct wb_bench_frame fitted = {.n_frames = tracks->n_frames};
+    struct wb_bench_frame fitted = {.clamp = NULL};
     WB_TRY(fit_motion(&fitted, tracks, server_up, why));
     fitted.clamp = wb_memory_new(tracks->n_frames, sizeof *fitted.clamp);
     smooth_clamp(&fitted, tracks, times, window);

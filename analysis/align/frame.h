@@ -24,9 +24,8 @@ struct wb_bench_frame {
     double planarity;      /* m, RMS distance of the markers from the bending plane */
     double plane_tilt;     /* rad, angle of the freely fitted plane's normal to the horizontal;
                               0 where the wire did not bend enough for one */
-    size_t n_frames;
-    /* (n_frames x 3) clamp marker, smoothed over time, in server coordinates; NaN in frames too
-     * far from one in which it was seen. Owned. */
+    /* (frames of the tracks x 3) clamp marker, smoothed over time, in server coordinates; NaN in
+     * frames too far from one in which it was seen. Owned. */
     double (*clamp)[3];
 };
 

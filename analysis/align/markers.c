@@ -12,9 +12,13 @@
 #define WB_LOG_DOMAIN "markers"
 
 #define DEFAULT_NOISE (0.1 * WB_MM)
-#define DEFAULT_GATE (2.0 * WB_MM)
-#define DEFAULT_SPEED (5.0 * WB_MM) /* m/s */
 #define DEFAULT_PERIOD (1.0 / 120.0)
+/* Largest distance (m) of a marker from its prediction, at least, and in standard deviations of a
+ * coordinate; speed (m/s, per second of the frame period's time scale) by which it grows in a gap.
+ */
+#define LEAST_GATE (2.0 * WB_MM)
+#define GATE_NOISES 8.0
+#define GATE_SPEED (5.0 * WB_MM)
 /* Following starts at the cheapest complete chain among this number of frames. */
 #define START_FRAMES 240
 /* Number of frames, evenly over a long recording, that are searched for the start. */
@@ -236,7 +240,7 @@ static const double (*points_of(const struct wb_point_cloud *cloud, size_t frame
 static double gate_of(const struct tracker *tracker, int marker)
 {
     const double gap = tracker->unseen[marker] * tracker->settings.frame_period;
-    return fmin(tracker->settings.gate + tracker->settings.speed * gap,
+    return fmin(fmax(LEAST_GATE, GATE_NOISES * tracker->settings.noise) + GATE_SPEED * gap,
                 0.45 * tracker->smallest_spacing);
 }
 
@@ -272,11 +276,11 @@ static void assign_nearest(const struct tracker *tracker, size_t frame, int *cho
 }
 
 /* Drops markers whose distances to their neighbours do not fit: the one of a bad pair that is
- * farther from its prediction. Returns the number dropped. */
-static int drop_broken_links(const struct tracker *tracker, size_t frame, int *chosen)
+ * farther from its prediction. */
+static void drop_broken_links(const struct tracker *tracker, size_t frame, int *chosen)
 {
     const double(*const points)[3] = points_of(tracker->cloud, frame);
-    int dropped = 0, last = -1;
+    int last = -1;
     for (int marker = 0; marker < tracker->specimen->n_markers; marker++) {
         if (chosen[marker] < 0)
             continue;
@@ -287,14 +291,12 @@ static int drop_broken_links(const struct tracker *tracker, size_t frame, int *c
                 const bool drop_last = wb_vec3_distance(tracker->predicted[last], a) >
                                        wb_vec3_distance(tracker->predicted[marker], b);
                 chosen[drop_last ? last : marker] = -1;
-                dropped++;
                 if (!drop_last)
                     continue;
             }
         }
         last = marker;
     }
-    return dropped;
 }
 
 static int count_chosen(const int *chosen, int n)
@@ -320,12 +322,12 @@ static double chain_distance(const struct tracker *tracker, size_t frame, const 
     return sum;
 }
 
-static void reverse(int *chosen, int n)
+static void reverse(int32_t *list, int n)
 {
     for (int i = 0; i < n / 2; i++) {
-        const int swapped = chosen[i];
-        chosen[i] = chosen[n - 1 - i];
-        chosen[n - 1 - i] = swapped;
+        const int32_t swapped = list[i];
+        list[i] = list[n - 1 - i];
+        list[n - 1 - i] = swapped;
     }
 }
 
@@ -542,8 +544,6 @@ enum wb_status wb_markers_track(struct wb_marker_tracks *tracks, const struct wb
         .tracks = &made, .cloud = cloud, .specimen = specimen, .settings = *settings};
     struct wb_marker_settings *const s = &tracker.settings;
     s->noise = s->noise > 0.0 ? s->noise : DEFAULT_NOISE;
-    s->gate = s->gate > 0.0 ? s->gate : fmax(DEFAULT_GATE, 8.0 * s->noise);
-    s->speed = s->speed > 0.0 ? s->speed : DEFAULT_SPEED;
     s->frame_period = s->frame_period > 0.0 ? s->frame_period : DEFAULT_PERIOD;
     tracker.smallest_spacing = specimen->length;
     for (int i = 1; i < specimen->n_markers; i++)
@@ -567,14 +567,8 @@ void wb_marker_tracks_release(struct wb_marker_tracks *tracks)
 
 void wb_markers_reverse(struct wb_marker_tracks *tracks)
 {
-    for (size_t frame = 0; frame < tracks->n_frames; frame++) {
-        int32_t *const row = row_of(tracks, frame);
-        for (int i = 0; i < tracks->n_markers / 2; i++) {
-            const int32_t swapped = row[i];
-            row[i] = row[tracks->n_markers - 1 - i];
-            row[tracks->n_markers - 1 - i] = swapped;
-        }
-    }
+    for (size_t frame = 0; frame < tracks->n_frames; frame++)
+        reverse(row_of(tracks, frame), tracks->n_markers);
 }
 
 const double *wb_markers_position(const struct wb_marker_tracks *tracks, size_t frame, int marker)

@@ -41,10 +41,7 @@ void wb_point_cloud_add(struct wb_point_cloud *cloud, const struct wb_mocap_fram
 void wb_point_cloud_release(struct wb_point_cloud *cloud);
 
 struct wb_marker_settings {
-    double noise; /* m, expected standard deviation of a coordinate; 0 takes 0.1 mm */
-    double gate;  /* m a marker may be from its prediction; 0 takes 2 mm or 8 times the noise */
-    double speed; /* m/s (per second of `frame_period`'s time scale) by which the gate grows in a
-                     gap; 0: 5 mm/s */
+    double noise;        /* m, expected standard deviation of a coordinate; 0 takes 0.1 mm */
     double frame_period; /* s between frames as the bench's clock counts; 0 takes 1/120 s */
 };
 

@@ -8,8 +8,6 @@
 #include "base/memory.h"
 #include "base/random.h"
 
-#define WB_LOG_DOMAIN "fit"
-
 enum {
     LEAST_GROUP = 2,
     DRAWN = 4000, /* samples */

@@ -20,7 +20,6 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 
 #include "analysis/dataset/machine.h"
 #include "analysis/dataset/test_piece.h"

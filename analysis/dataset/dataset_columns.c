@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#define WB_LOG_DOMAIN "dataset"
-
 static const struct wb_column_kind row_kinds[] = {
     {"t_s", "s", WB_COLUMN_REAL},
     {"cycle", "1", WB_COLUMN_INTEGER},

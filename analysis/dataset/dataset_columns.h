@@ -5,7 +5,6 @@
 
 #include "analysis/dataset/dataset.h"
 #include "base/columns.h"
-#include "base/status.h"
 
 enum {
     WB_DATASET_COLUMNS_FORCE_DEFLECTION,

@@ -70,17 +70,42 @@ double wb_fit_usual_size(double *sizes, size_t n)
     return 1.4826 * wb_fit_median(sizes, n);
 }
 
+static double value_at(const double *values, size_t stride, size_t i)
+{
+    return *(const double *)((const char *)values + i * stride);
+}
+
 size_t wb_fit_first_at(const double *values, size_t stride, size_t n, double at)
 {
     size_t low = 0, high = n;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (*(const double *)((const char *)values + middle * stride) < at)
+        if (value_at(values, stride, middle) < at)
             low = middle + 1;
         else
             high = middle;
     }
     return low;
+}
+
+double wb_fit_between(double t, double t0, double v0, double t1, double v1)
+{
+    const double part = t1 > t0 ? (t - t0) / (t1 - t0) : 0.0;
+    return (1.0 - part) * v0 + part * v1;
+}
+
+size_t wb_fit_branch_end(const double *values, size_t stride, size_t n, size_t begin, double back)
+{
+    size_t farthest = begin;
+    for (size_t i = begin; i < n; i++) {
+        const double way = value_at(values, stride, i) - value_at(values, stride, farthest);
+        const double ahead = back > 0.0 ? way : -way;
+        if (ahead >= 0.0)
+            farthest = i;
+        else if (-ahead > fabs(back))
+            return farthest + 1;
+    }
+    return n;
 }
 
 /* By bisection, because gsl_cdf_fdist_Qinv() (GSL 2.7.1) is NaN for some degrees of freedom, such

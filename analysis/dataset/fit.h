@@ -1,5 +1,6 @@
-/* Straight lines and parabolas through measured points, medians, search in sorted values, and the
- * limit of an F-test. GSL's error handler, which aborts, must be off. */
+/* Straight lines and parabolas through measured points, medians, search in sorted values, branches
+ * of values that rise and fall, and the limit of an F-test. GSL's error handler, which aborts, must
+ * be off. */
 #ifndef WB_ANALYSIS_DATASET_FIT_H
 #define WB_ANALYSIS_DATASET_FIT_H
 
@@ -36,5 +37,14 @@ double wb_fit_fisher_limit(double level, double numerator, double denominator);
 /* Index of the first of n ascending values that is not below `at`; n when all are. Each lies
  * `stride` bytes after the one before: in an array of structs, the struct's size. */
 size_t wb_fit_first_at(const double *values, size_t stride, size_t n, double at);
+
+/* Linear between v0 at t0 and v1 at t1; v0 if t0 and t1 are equal. */
+double wb_fit_between(double t, double t0, double v0, double t1, double v1);
+
+/* Cuts n values, each `stride` bytes after the one before, into branches that rise and fall in
+ * turn. The branch from index `begin` ends after its farthest value, once the values have come back
+ * from it by more than `back` (negative: of a falling branch). Returns the index of the first value
+ * of the next branch; n if the values do not turn. */
+size_t wb_fit_branch_end(const double *values, size_t stride, size_t n, size_t begin, double back);
 
 #endif

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/dataset/fit.h"
 #include "base/compress.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -171,47 +172,29 @@ static enum wb_status take_times(struct import *import)
     return WB_OK;
 }
 
-static void mark(struct wb_dataset *dataset, size_t from, size_t to, bool load, int cycle)
-{
-    for (size_t i = from; i < to; i++) {
-        dataset->rows[i].phase = load ? WB_PHASE_LOAD : WB_PHASE_UNLOAD;
-        dataset->rows[i].cycle = cycle;
-    }
-}
-
 /* Separates phases at the turns: where the travel has returned from its farthest point by TURN of
  * its range. */
 static void cut_phases(struct wb_dataset *dataset)
 {
-    double least = dataset->rows[0].deflection, most = least;
+    struct wb_row *const rows = dataset->rows;
+    double least = rows[0].deflection, most = least;
     for (size_t i = 0; i < dataset->n_rows; i++) {
-        least = fmin(least, dataset->rows[i].deflection);
-        most = fmax(most, dataset->rows[i].deflection);
+        least = fmin(least, rows[i].deflection);
+        most = fmax(most, rows[i].deflection);
     }
     const double back = TURN * (most - least);
-    size_t start = 0, extreme = 0;
-    bool load = true;
-    int cycle = 1;
-    for (size_t i = 0; i < dataset->n_rows; i++) {
-        const double way = dataset->rows[i].deflection - dataset->rows[extreme].deflection;
-        const double ahead = load ? way : -way;
-        if (ahead >= 0.0) {
-            extreme = i;
-        } else if (-ahead > back) {
-            mark(dataset, start, extreme + 1, load, cycle);
-            start = extreme + 1;
-            extreme = i;
-            load = !load;
-            cycle += load;
+    bool load = false;
+    int cycle = 0;
+    for (size_t i = 0; i < dataset->n_rows;) {
+        load = !load;
+        cycle += load;
+        const size_t end = wb_fit_branch_end(&rows->deflection, sizeof *rows, dataset->n_rows, i,
+                                             load ? back : -back);
+        for (; i < end; i++) {
+            rows[i].phase = load ? WB_PHASE_LOAD : WB_PHASE_UNLOAD;
+            rows[i].cycle = cycle;
         }
     }
-    mark(dataset, start, dataset->n_rows, load, cycle);
-}
-
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
 }
 
 /* A pause of the machine cannot be distinguished from lost rows; both are reported. */
@@ -225,7 +208,7 @@ static void count_gaps(struct import *import)
     double *const steps = wb_memory_new(n, sizeof *steps);
     for (size_t i = 0; i < n; i++)
         steps[i] = dataset->rows[i + 1].t - dataset->rows[i].t;
-    qsort(steps, n, sizeof *steps, by_size);
+    wb_fit_sort(steps, n);
     const double limit = 5.0 * steps[n / 2];
     for (size_t i = 0; i < n; i++) {
         if (steps[i] > limit && limit > 0.0) {
@@ -363,12 +346,7 @@ enum wb_status wb_machine_import(struct wb_dataset *dataset, const void *bytes, 
                                  struct wb_machine_import_report *report, struct wb_reason *why)
 {
     struct wb_dataset made;
-    struct import import;
-    memset(&import, 0, sizeof import);
-    import.from = from;
-    import.dataset = &made;
-    import.bytes = size;
-    import.why = why;
+    struct import import = {.from = from, .dataset = &made, .bytes = size, .why = why};
     wb_hash_bytes(bytes, size, import.hash);
     wb_dataset_init(&made);
     enum wb_status status =

@@ -1,6 +1,5 @@
 #include "analysis/import/mocap_import.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -202,8 +201,6 @@ static enum wb_status find_markers(struct import *import)
     if (status != WB_OK)
         return wb_fail(status, "%s: %s", import->request->take_path, why.text);
     result->n_markers = import->tracks.n_markers;
-    result->strays = import->tracks.n_strays;
-    result->symmetric = import->tracks.symmetric;
     result->missing = (double)import->tracks.n_missing /
                       ((double)import->tracks.n_frames * import->tracks.n_markers);
     count_stitched(import);

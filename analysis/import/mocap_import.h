@@ -42,8 +42,6 @@ struct wb_mocap_import {
     int n_markers;
     size_t n_stitched; /* columns that contained one of our markers at some time */
     double missing;    /* part of all positions of our markers that are missing */
-    size_t strays;
-    bool symmetric;
     /* Force. */
     bool has_force;
     char channel[64], unit[16];        /* of a take; "": none */

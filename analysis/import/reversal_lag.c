@@ -2,7 +2,6 @@
 
 #include <math.h>
 
-#include "analysis/dataset/fit.h"
 #include "analysis/dataset/least_squares.h"
 #include "base/memory.h"
 
@@ -224,7 +223,6 @@ static bool find_with_rest(struct problem *p, int index, const struct rests *res
         return false;
     result->lag = seconds_of(x[P_LAG]);
     result->uncertainty = seconds_of(deviations[P_LAG]);
-    result->rest = p->rest;
     return fabs(result->lag) < MOST_LAG && result->uncertainty < MOST_LAG;
 }
 
@@ -251,7 +249,7 @@ static bool find_with(struct wb_reversal_lag *result, const struct wb_signal *mo
         .status = WB_OK,
     };
     struct rests rests;
-    double weights = 0.0, lag = 0.0, squares = 0.0, rest = 0.0;
+    double weights = 0.0, lag = 0.0, squares = 0.0;
     if (!is_enough(&p.motion) || !find_rests(&p, n_rests, &rests))
         return false;
     p.with_force = true;
@@ -261,13 +259,11 @@ static bool find_with(struct wb_reversal_lag *result, const struct wb_signal *mo
             continue;
         weights += rests.weight[i];
         lag += rests.weight[i] * one.lag;
-        rest += rests.weight[i] * one.rest;
         squares += rests.weight[i] * (one.lag * one.lag + one.uncertainty * one.uncertainty);
     }
     if (!(weights > 0.0))
         return false;
     result->lag = lag / weights;
-    result->rest = rest / weights;
     result->uncertainty = sqrt(squares / weights - result->lag * result->lag);
     return true;
 }

@@ -37,7 +37,6 @@ struct wb_reversal_lag {
     double uncertainty; /* s, standard: from the curvature of the misfit, enlarged if the misfit
                            exceeds the noise, and at least the change of the lag with a shorter
                            window */
-    double rest;        /* s, between the two branches */
 };
 
 /* The reversals of a turn that the motion reaches at `arrival` and leaves at `departure` (s): one

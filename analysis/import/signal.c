@@ -23,8 +23,7 @@ static double value_at(const struct wb_signal *s, double t)
         return s->x[0];
     if (next == s->n)
         return s->x[s->n - 1];
-    const double part = (t - s->t[next - 1]) / (s->t[next] - s->t[next - 1]);
-    return (1.0 - part) * s->x[next - 1] + part * s->x[next];
+    return wb_fit_between(t, s->t[next - 1], s->x[next - 1], s->t[next], s->x[next]);
 }
 
 double wb_signal_noise(const struct wb_signal *s)

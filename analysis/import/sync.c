@@ -3,13 +3,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "analysis/dataset/fit.h"
 #include "analysis/import/reversal_lag.h"
 #include "base/memory.h"
-
-#define WB_LOG_DOMAIN "sync"
 
 /* Duration (s) of a tap on each side of its middle: half of that of wb_signal_shake(), which shows
  * the tap again, inverted, on either side. */
