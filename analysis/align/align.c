@@ -187,11 +187,6 @@ static void release(struct wb_align *align)
     wb_frame_release(&align->frame);
 }
 
-static enum wb_status load_recording(struct wb_align *align, const void *path)
-{
-    return wb_align_load(align, path);
-}
-
 /* --- signals --- */
 
 void wb_align_signals_release(struct wb_align_signals *signals)
@@ -203,43 +198,37 @@ void wb_align_signals_release(struct wb_align_signals *signals)
     memset(signals, 0, sizeof *signals);
 }
 
-static void copy_signals(const struct wb_align *align, struct wb_align_signals *signals)
+static void keep_signals(const struct wb_align *align, struct wb_align_signals *signals)
 {
     const struct wb_align_reading *const readings = align->readings.items;
+    const size_t n_frames = align->cloud.n_frames, n = align->readings.n;
     const int up = align->rig.mocap.up == 'z' ? 2 : 1;
-    for (size_t i = 0; i < align->cloud.n_frames; i++) {
+    *signals = (struct wb_align_signals){
+        .motion_t = wb_memory_new(n_frames, sizeof *signals->motion_t),
+        .motion = wb_memory_new(n_frames, sizeof *signals->motion),
+        .n_force = n,
+        .force_t = wb_memory_new(n, sizeof *signals->force_t),
+        .force = wb_memory_new(n, sizeof *signals->force),
+        .filter_delay = align->filter_delay,
+        .filter_delay_uncertainty = align->filter_delay_uncertainty,
+    };
+    for (size_t i = 0; i < n_frames; i++) {
         const double *const clamp = wb_markers_position(&align->tracks, i, 0);
         if (!clamp)
             continue;
         signals->motion_t[signals->n_motion] = align->frame_t[i];
         signals->motion[signals->n_motion++] = -clamp[up];
     }
-    for (size_t i = 0; i < align->readings.n; i++) {
+    for (size_t i = 0; i < n; i++) {
         signals->force_t[i] = readings[i].t;
         signals->force[i] = readings[i].force;
     }
-    signals->n_force = align->readings.n;
-    signals->filter_delay = align->filter_delay;
-    signals->filter_delay_uncertainty = align->filter_delay_uncertainty;
 }
 
-static void keep_signals(const struct wb_align *align, struct wb_align_signals *signals)
-{
-    const size_t n = align->cloud.n_frames + 1, m = align->readings.n + 1;
-    *signals = (struct wb_align_signals){
-        .motion_t = wb_memory_new(n, sizeof *signals->motion_t),
-        .motion = wb_memory_new(n, sizeof *signals->motion),
-        .force_t = wb_memory_new(m, sizeof *signals->force_t),
-        .force = wb_memory_new(m, sizeof *signals->force),
-    };
-    copy_signals(align, signals);
-}
-
-/* wb_align_run_from(); `signals` may be NULL. */
-static enum wb_status run_all(struct wb_dataset *dataset, struct wb_align_signals *signals,
-                              const struct wb_align_settings *settings,
-                              enum wb_status (*load)(struct wb_align *, const void *),
-                              const void *context, struct wb_reason *why)
+enum wb_status wb_align_run_from(struct wb_dataset *dataset, struct wb_align_signals *signals,
+                                 const struct wb_align_settings *settings,
+                                 enum wb_status (*load)(struct wb_align *, const void *),
+                                 const void *context, struct wb_reason *why)
 {
     struct wb_reason lost = {.text = ""};
     memset(dataset, 0, sizeof *dataset);
@@ -270,18 +259,10 @@ static enum wb_status run_all(struct wb_dataset *dataset, struct wb_align_signal
     return status;
 }
 
-enum wb_status wb_align_run_from(struct wb_dataset *dataset,
-                                 const struct wb_align_settings *settings,
-                                 enum wb_status (*load)(struct wb_align *, const void *),
-                                 const void *context, struct wb_reason *why)
-{
-    return run_all(dataset, NULL, settings, load, context, why);
-}
-
 enum wb_status wb_align_run(struct wb_dataset *dataset, const char *recording_path,
                             const struct wb_align_settings *settings, struct wb_reason *why)
 {
-    return run_all(dataset, NULL, settings, load_recording, recording_path, why);
+    return wb_align_run_from(dataset, NULL, settings, wb_align_load, recording_path, why);
 }
 
 enum wb_status wb_align_run_signals(struct wb_dataset *dataset, struct wb_align_signals *signals,
@@ -289,5 +270,5 @@ enum wb_status wb_align_run_signals(struct wb_dataset *dataset, struct wb_align_
                                     const struct wb_align_settings *settings, struct wb_reason *why)
 {
     memset(signals, 0, sizeof *signals);
-    return run_all(dataset, signals, settings, load_recording, recording_path, why);
+    return wb_align_run_from(dataset, signals, settings, wb_align_load, recording_path, why);
 }

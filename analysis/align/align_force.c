@@ -223,11 +223,7 @@ static void describe_drift(struct wb_align *align)
     const size_t n = align->n_zeros;
     const double end = align->rows[align->n_rows - 1].t;
     const double outside = fmax(end - zeros[n - 1].t, 0.0);
-    struct wb_align_correction correction = {
-        .name = "zero drift",
-        .unit = "mN",
-        .factor = WB_MN,
-    };
+    struct wb_align_correction correction = {"zero drift", "mN", WB_MN, 0.0, 0.0};
     list_zeros(align);
     if (n > 1) {
         const double seen = drift_seen(align);
@@ -277,12 +273,7 @@ static void set_tension(struct wb_align *align)
 static void describe_tare(struct wb_align *align)
 {
     const struct wb_align_correction tare = {
-        .name = "tare",
-        .unit = "mN",
-        .factor = WB_MN,
-        .value = align->tare,
-        .uncertainty = align->reading_noise / sqrt((double)align->tare_samples),
-    };
+        "tare", "mN", WB_MN, align->tare, align->reading_noise / sqrt((double)align->tare_samples)};
     if (wb_rig_tare_load(&align->rig) != 0.0)
         wb_align_correct(align, &tare,
                          "mean of %ld readings before the test with the counterweight on the "
@@ -401,24 +392,14 @@ static void describe_zero(struct wb_align *align)
         row->force = row->vertical - align->zero_force;
         lean = fmax(lean, row->tension - row->vertical);
     }
-    const struct wb_align_correction strand = {
-        .name = "strand lean",
-        .unit = "mN",
-        .factor = WB_MN,
-        .value = lean,
-        .uncertainty = (double)NAN,
-    };
+    const struct wb_align_correction strand = {"strand lean", "mN", WB_MN, lean, (double)NAN};
     wb_align_correct(align, &strand,
                      "largest difference of the tension and its vertical component; the strand's "
                      "upper end is assumed to be vertically above the straight wire's tip");
     const double level = wb_align_level_uncertainty(align);
     const struct wb_align_correction zero = {
-        .name = "force at zero deflection",
-        .unit = "mN",
-        .factor = WB_MN,
-        .value = align->zero_force,
-        .uncertainty = hypot(align->zero_force_deviation, align->stiffness * level),
-    };
+        "force at zero deflection", "mN", WB_MN, align->zero_force,
+        hypot(align->zero_force_deviation, align->stiffness * level)};
     wb_align_correct(
         align, &zero,
         "vertical component of the tension where the tip is level with the clamp on the first "

@@ -149,8 +149,9 @@ struct wb_align {
     double speed; /* m/s of bench time: typical deflection rate of the loadings */
 };
 
-/* The steps of the alignment, in their order. Each puts its failure into align->why. */
-WB_MUST_CHECK enum wb_status wb_align_load(struct wb_align *align, const char *path);
+/* The steps of the alignment, in their order; the context of the first is the recording's path.
+ * Each puts its failure into align->why. */
+WB_MUST_CHECK enum wb_status wb_align_load(struct wb_align *align, const void *context);
 WB_MUST_CHECK enum wb_status wb_align_times(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_markers(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_rows(struct wb_align *align);
@@ -159,10 +160,11 @@ void wb_align_stage(struct wb_align *align);
 WB_MUST_CHECK enum wb_status wb_align_force(struct wb_align *align);
 void wb_align_natural(struct wb_align *align);
 
-/* wb_align_run() from another source: `load` replaces wb_align_load(). Tests make specimens with it
- * without a recording. */
+/* wb_align_run_signals() from any source: `load` is wb_align_load(), or replaces it in tests, which
+ * make specimens without a recording. `signals` may be NULL. */
 WB_MUST_CHECK enum wb_status
-wb_align_run_from(struct wb_dataset *dataset, const struct wb_align_settings *settings,
+wb_align_run_from(struct wb_dataset *dataset, struct wb_align_signals *signals,
+                  const struct wb_align_settings *settings,
                   enum wb_status (*load)(struct wb_align *align, const void *context),
                   const void *context, struct wb_reason *why);
 

@@ -460,8 +460,9 @@ static enum wb_status load_all(struct wb_align *align, struct wb_recording *reco
     return WB_OK;
 }
 
-enum wb_status wb_align_load(struct wb_align *align, const char *path)
+enum wb_status wb_align_load(struct wb_align *align, const void *context)
 {
+    const char *const path = context;
     struct wb_recording *recording;
     snprintf(align->name, sizeof align->name, "%.120s", wb_file_name(path));
     WB_TRY(wb_recording_open_with_reason(&recording, path, align->lost));
@@ -824,13 +825,8 @@ enum wb_status wb_align_times(struct wb_align *align)
         return wb_fail_to(align->why, WB_ERR_DATA,
                           "%s: the recording has no frame of motion capture with a time",
                           align->name);
-    const struct wb_align_correction correction = {
-        .name = "filter delay",
-        .unit = "ms",
-        .factor = 1e-3,
-        .value = align->filter_delay,
-        .uncertainty = align->filter_delay_uncertainty,
-    };
+    const struct wb_align_correction correction = {"filter delay", "ms", 1e-3, align->filter_delay,
+                                                   align->filter_delay_uncertainty};
     wb_align_correct(align, &correction,
                      "the load cell's stamps were moved back by its filter's delay from the rig "
                      "file; the transmission time of a line cannot be separated from it");

@@ -310,13 +310,9 @@ enum wb_status wb_align_rows(struct wb_align *align)
                           align->name, align->n_rows);
     align->rows = wb_memory_resize(align->rows, align->n_rows, sizeof *align->rows);
     zero_travel(align);
-    const struct wb_align_correction correction = {
-        .name = "marker offset",
-        .unit = "mm",
-        .factor = WB_MM,
-        .value = align->specimen.marker_offset,
-        .uncertainty = align->specimen.marker_offset_uncertainty,
-    };
+    const struct wb_align_correction correction = {"marker offset", "mm", WB_MM,
+                                                   align->specimen.marker_offset,
+                                                   align->specimen.marker_offset_uncertainty};
     wb_align_correct(align, &correction,
                      "removed along the local normal of the axis fitted to all markers; the "
                      "uncertainty is that of one marker and enters the deflection in full");

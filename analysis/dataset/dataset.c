@@ -25,11 +25,10 @@
 enum loading {
     LOADING_TIP,
     LOADING_FOLLOWER,
-    LOADING_GENERAL,
-    LOADINGS
+    LOADING_GENERAL
 };
 
-static const char *const loading_names[LOADINGS] = {"tip", "follower", "general"};
+static const char *const loading_names[] = {"tip", "follower", "general", NULL};
 
 static enum loading loading_of(const struct wb_test_info *info)
 {
@@ -238,12 +237,10 @@ static enum wb_status get_loading(const struct wb_json *test, const char *path,
                                   struct wb_test_info *info, struct wb_reason *why)
 {
     const char *name = loading_names[LOADING_TIP];
-    int loading = 0;
+    int loading;
     if (wb_json_get(test, "loading") && !wb_json_get_text(test, "loading", &name))
         return wb_fail_to(why, WB_ERR_FORMAT, "%s: test.loading: expected a text", path);
-    while (loading < LOADINGS && strcmp(name, loading_names[loading]) != 0)
-        loading++;
-    if (loading == LOADINGS)
+    if (!wb_machine_find_name(loading_names, name, &loading))
         return wb_fail_to(why, WB_ERR_FORMAT,
                           "%s: test.loading: expected %s, %s or %s, not '%.40s'", path,
                           loading_names[LOADING_TIP], loading_names[LOADING_FOLLOWER],

@@ -32,23 +32,8 @@ static const double smallest_place = 1e-12;
 /* Decimal places from SI to the file's unit. */
 static const int value_shifts[VALUES] = {3, 3, 3, 3, 3, 3, -6, -6, 0};
 
-static void get_values(const struct wb_field_node *node, double values[VALUES])
-{
-    memcpy(values, node->reference, sizeof node->reference);
-    memcpy(values + 3, node->position, sizeof node->position);
-    values[6] = node->von_mises;
-    values[7] = node->axial;
-    values[8] = node->plastic;
-}
-
-static void set_values(struct wb_field_node *node, const double values[VALUES])
-{
-    memcpy(node->reference, values, sizeof node->reference);
-    memcpy(node->position, values + 3, sizeof node->position);
-    node->von_mises = values[6];
-    node->axial = values[7];
-    node->plastic = values[8];
-}
+/* A node's members are the values of its row, in this order. */
+_Static_assert(sizeof(struct wb_field_node) == VALUES * sizeof(double), "a node is its values");
 
 /* --- the list --- */
 
@@ -109,7 +94,7 @@ static enum wb_status append_field(struct wb_text *text, const struct wb_field *
     for (int f = 0; f < field->n_faces; f++) {
         for (int k = 0; k < 8; k++) {
             double values[VALUES];
-            get_values(&field->faces[f].node[k], values);
+            memcpy(values, &field->faces[f].node[k], sizeof values);
             wb_text_append(text, "%s,%s,", field->state,
                            isnan(field->x) ? "longitudinal" : "cross");
             if (!isnan(field->x))
@@ -234,7 +219,7 @@ static enum wb_status take_row(struct reader *reader, const struct wb_csv_table 
     if (row->face != field->n_faces - 1 || (expected > 0 && row->part != face->part))
         return wb_csv_table_fail(table, "face: expected face %d in one part", field->n_faces - 1);
     face->part = row->part;
-    set_values(&face->node[row->node], row->values);
+    memcpy(&face->node[row->node], row->values, sizeof row->values);
     return WB_OK;
 }
 

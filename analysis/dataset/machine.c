@@ -21,7 +21,7 @@ const char *wb_machine_kind_name(enum wb_test_kind kind)
     return kind_names[kind];
 }
 
-static bool find_name(const char *const *names, const char *name, int *index)
+bool wb_machine_find_name(const char *const *names, const char *name, int *index)
 {
     for (int i = 0; names[i]; i++) {
         if (strcmp(names[i], name) == 0) {
@@ -35,7 +35,7 @@ static bool find_name(const char *const *names, const char *name, int *index)
 bool wb_machine_kind_find(const char *name, enum wb_test_kind *kind)
 {
     int index;
-    if (!find_name(kind_names, name, &index))
+    if (!wb_machine_find_name(kind_names, name, &index))
         return false;
     *kind = (enum wb_test_kind)index;
     return true;
@@ -255,7 +255,8 @@ static enum wb_status get_key(struct wb_machine *machine, const struct wb_json *
     if (!value && key->form == FORM_BAND)
         return WB_OK;
     if (key->form == FORM_CHOICE) {
-        if (!value || !wb_json_text(value, &name) || !find_name(key->choices, name, &choice))
+        if (!value || !wb_json_text(value, &name) ||
+            !wb_machine_find_name(key->choices, name, &choice))
             return wb_fail_to(why, WB_ERR_FORMAT, "%s: machine.%s: expected %s or %s", path,
                               key->name, key->choices[0], key->choices[1]);
         set_choice(machine, key, choice);

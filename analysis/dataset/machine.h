@@ -41,6 +41,9 @@ const char *wb_machine_kind_name(enum wb_test_kind kind);
 /* Finds the kind of that name; false when there is none. */
 bool wb_machine_kind_find(const char *name, enum wb_test_kind *kind);
 
+/* Finds a name in a list that ends in NULL; false when it is not there. */
+bool wb_machine_find_name(const char *const *names, const char *name, int *index);
+
 /* A number that is known, or only known to lie in a band, or not known at all. */
 struct wb_band {
     bool known;         /* false: the three are NaN */

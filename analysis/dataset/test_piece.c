@@ -260,17 +260,14 @@ static bool get_band(const struct wb_json *object, const char *key, double limit
 static bool get_constituent(const struct wb_json *object, struct wb_test_piece *piece)
 {
     const char *name;
+    int index;
     if (!isfinite(piece->area))
         return true;
-    if (!wb_json_get_text(object, "constituent", &name))
+    if (!wb_json_get_text(object, "constituent", &name) ||
+        !wb_machine_find_name(constituent_names, name, &index))
         return false;
-    for (int i = 0; constituent_names[i]; i++) {
-        if (strcmp(constituent_names[i], name) == 0) {
-            piece->constituent = (enum wb_constituent)i;
-            return true;
-        }
-    }
-    return false;
+    piece->constituent = (enum wb_constituent)index;
+    return true;
 }
 
 enum wb_status wb_test_piece_get_json(struct wb_test_piece *piece, const struct wb_json *object,

@@ -203,7 +203,7 @@ enum wb_status fast_rig_run(const struct fast_rig *fast, struct wb_dataset *data
 {
     struct wb_align_settings settings;
     wb_align_default_settings(&settings);
-    return wb_align_run_from(dataset, &settings, load, fast, NULL);
+    return wb_align_run_from(dataset, NULL, &settings, load, fast, NULL);
 }
 
 /* The true section of a specimen. */
