@@ -490,13 +490,6 @@ double wb_align_reading_period(const struct wb_align *align)
 
 /* --- the cameras --- */
 
-struct stamps {
-    double *device;
-    int64_t *host_ns;
-    size_t n;
-    bool on_probe_clock;
-};
-
 /* The stamp of a frame that is used: the one on the probes' clock if there are probes, else the
  * capture stamp. */
 static double stamp_of(const struct wb_point_frame *frame, bool on_probe_clock)
@@ -564,12 +557,11 @@ static void use_host_times(struct wb_align *align)
 
 /* Fits a line to the frames first..last-1, through the probes of that time if there are any. No
  * message on failure. */
-static enum wb_status fit_segment(struct wb_align *align, const struct stamps *stamps, size_t first,
-                                  size_t last, struct wb_clock_line *line)
+static enum wb_status fit_segment(const struct wb_align *align,
+                                  const struct wb_clock_stamps *stamps, bool on_probe_clock,
+                                  size_t first, size_t last, struct wb_clock_line *line)
 {
-    const double nominal = 1.0 / align->rig.time_scale;
-    enum wb_status status = WB_ERR_DATA;
-    if (stamps->on_probe_clock) {
+    if (on_probe_clock) {
         /* Probes answered by the same run of the server: those between these stamps, with a
          * margin. */
         const struct wb_clock_probe *const all = align->probes.items;
@@ -581,13 +573,13 @@ static enum wb_status fit_segment(struct wb_align *align, const struct stamps *s
                 all[i].t_device <= stamps->device[last - 1] + margin)
                 used[n++] = all[i];
         }
-        status = wb_clock_fit_probes(line, used, n, nominal);
+        const enum wb_status status = wb_clock_fit_probes(line, used, n, stamps->nominal_slope);
         free(used);
         if (status != WB_ERR_DATA)
             return status;
     }
     return wb_clock_fit_envelope(line, stamps->device + first, stamps->host_ns + first,
-                                 last - first, nominal, LEAST_SPAN);
+                                 last - first, stamps->nominal_slope, LEAST_SPAN);
 }
 
 /* Describes a segment of n_frames frames and `span` seconds of the server's clock. */
@@ -614,21 +606,19 @@ static void describe_segment(struct wb_align *align, struct wb_json *list, size_
                          "includes the shortest network latency, an unknown constant");
 }
 
-static enum wb_status map_segments(struct wb_align *align, const struct stamps *stamps)
+static enum wb_status map_segments(struct wb_align *align, const struct wb_clock_stamps *stamps,
+                                   bool on_probe_clock)
 {
     size_t starts[WB_ALIGN_MAX_SEGMENTS];
-    const struct wb_clock_stamps arrivals = {.device = stamps->device,
-                                             .host_ns = stamps->host_ns,
-                                             .n = stamps->n,
-                                             .nominal_slope = 1.0 / align->rig.time_scale};
-    const size_t n_segments = wb_clock_split(&arrivals, JUMP, starts, WB_ALIGN_MAX_SEGMENTS);
+    const size_t n_segments = wb_clock_split(stamps, JUMP, starts, WB_ALIGN_MAX_SEGMENTS);
     struct wb_json *const list = wb_json_set_array(align->checks, "camera_clock");
     align->camera_uncertainty = 0.0;
-    align->method = stamps->on_probe_clock ? "echo probes" : "lower envelope";
+    align->method = on_probe_clock ? "echo probes" : "lower envelope";
     for (size_t i = 0; i < n_segments; i++) {
         const size_t first = starts[i], last = i + 1 < n_segments ? starts[i + 1] : stamps->n;
         struct wb_clock_line line;
-        const enum wb_status status = fit_segment(align, stamps, first, last, &line);
+        const enum wb_status status =
+            fit_segment(align, stamps, on_probe_clock, first, last, &line);
         if (status != WB_OK)
             return wb_fail_to(align->why, status, "out of memory for %zu stamps", last - first);
         for (size_t k = first; k < last; k++)
@@ -670,25 +660,22 @@ static enum wb_status map_cameras(struct wb_align *align)
     if (has_stamps)
         n_dropped = order_frames(align, on_probe_clock);
     const size_t n = align->cloud.n_frames;
-    struct stamps stamps = {
-        .device = wb_memory_new(n, sizeof *stamps.device),
-        .host_ns = wb_memory_new(n, sizeof *stamps.host_ns),
-        .n = n,
-        .on_probe_clock = on_probe_clock,
-    };
+    double *const device = wb_memory_new(n, sizeof *device);
+    int64_t *const host_ns = wb_memory_new(n, sizeof *host_ns);
     align->frame_t = wb_memory_new(n, sizeof *align->frame_t);
     enum wb_status status = WB_OK;
     if (align->camera_times_given || !has_stamps) {
         use_host_times(align);
     } else {
         for (size_t i = 0; i < n; i++) {
-            stamps.device[i] = stamp_of(&align->cloud.frames[i], on_probe_clock);
-            stamps.host_ns[i] = align->cloud.frames[i].t_ns;
+            device[i] = stamp_of(&align->cloud.frames[i], on_probe_clock);
+            host_ns[i] = align->cloud.frames[i].t_ns;
         }
-        status = map_segments(align, &stamps);
+        const struct wb_clock_stamps stamps = {device, host_ns, n, 1.0 / align->rig.time_scale};
+        status = map_segments(align, &stamps, on_probe_clock);
     }
-    free(stamps.device);
-    free(stamps.host_ns);
+    free(device);
+    free(host_ns);
     if (status == WB_OK)
         drop_backward(align);
     wb_json_set_integer(align->checks, "disordered_frames",

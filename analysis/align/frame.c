@@ -127,23 +127,17 @@ static enum wb_status fit_motion(struct wb_bench_frame *frame,
 
 /* --- smoothing the clamp's path --- */
 
-/* The clamp marker's path. */
-struct path {
-    const struct wb_marker_tracks *tracks;
-    const double *times; /* s, of the frames */
-};
-
 /* Straight line through the clamp marker's coordinates over frames first..last-1, evaluated at time
  * t. */
-static bool local_line(const struct path *path, size_t first, size_t last, double t,
-                       double *position)
+static bool local_line(const struct wb_marker_tracks *tracks, const double *times, size_t first,
+                       size_t last, double t, double *position)
 {
     double n = 0.0, sum_t = 0.0, sum_tt = 0.0, sum_p[3] = {0.0}, sum_tp[3] = {0.0};
     for (size_t i = first; i < last; i++) {
-        const double *const p = wb_markers_position(path->tracks, i, 0);
+        const double *const p = wb_markers_position(tracks, i, 0);
         if (!p)
             continue;
-        const double dt = path->times[i] - t;
+        const double dt = times[i] - t;
         n += 1.0;
         sum_t += dt;
         sum_tt += dt * dt;
@@ -169,7 +163,6 @@ static bool local_line(const struct path *path, size_t first, size_t last, doubl
 static void smooth_clamp(struct wb_bench_frame *frame, const struct wb_marker_tracks *tracks,
                          const double *times, double window)
 {
-    const struct path path = {tracks, times};
     size_t first = 0, last = 0;
     for (size_t i = 0; i < tracks->n_frames; i++) {
         while (first < i && times[i] - times[first] > window)
@@ -178,7 +171,7 @@ static void smooth_clamp(struct wb_bench_frame *frame, const struct wb_marker_tr
             last = i + 1;
         while (last < tracks->n_frames && times[last] - times[i] <= window)
             last++;
-        if (!local_line(&path, first, last, times[i], frame->clamp[i]))
+        if (!local_line(tracks, times, first, last, times[i], frame->clamp[i]))
             frame->clamp[i][0] = frame->clamp[i][1] = frame->clamp[i][2] = (double)NAN;
     }
 }

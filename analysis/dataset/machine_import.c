@@ -38,31 +38,28 @@ struct import {
 
 /* --- columns --- */
 
+static enum wb_status find_columns(struct import *import, unsigned needed)
+{
+    return wb_table_columns_find(&import->columns, &import->table, import->from->columns, needed,
+                                 WB_STANDARD_GRAVITY, import->from->path, import->why);
+}
+
 /* A tensile test's strain is that of an extensometer; where the machine file says so it comes
  * first, else the crosshead's travel. */
 static enum wb_status choose_columns(struct import *import)
 {
     const struct wb_machine *const machine = import->from->machine;
     const int *const column = import->columns.column;
-    WB_TRY(wb_table_columns_find(&import->columns, &import->table, import->from->columns,
-                                 WB_MEASURED_BIT(WB_MEASURED_FORCE), WB_STANDARD_GRAVITY,
-                                 import->from->path, import->why));
-    const bool tensile = machine->kind == WB_TEST_TENSILE;
-    const bool has_strain = tensile && column[WB_MEASURED_STRAIN] >= 0;
+    WB_TRY(find_columns(import, WB_MEASURED_BIT(WB_MEASURED_FORCE)));
     const bool has_travel = column[WB_MEASURED_TRAVEL] >= 0;
-    import->travel = WB_MEASURED_TRAVEL;
-    import->travel_factor = 1.0;
-    if (has_strain && (machine->own_elongation || !has_travel)) {
-        import->travel = WB_MEASURED_STRAIN;
-        import->travel_factor = machine->gauge_length;
+    const bool by_strain = machine->kind == WB_TEST_TENSILE && column[WB_MEASURED_STRAIN] >= 0 &&
+                           (machine->own_elongation || !has_travel);
+    import->travel = by_strain ? WB_MEASURED_STRAIN : WB_MEASURED_TRAVEL;
+    import->travel_factor = by_strain ? machine->gauge_length : 1.0;
+    if (by_strain || has_travel)
         return WB_OK;
-    }
-    if (!has_travel)
-        return wb_table_columns_find(&import->columns, &import->table, import->from->columns,
-                                     WB_MEASURED_BIT(WB_MEASURED_FORCE) |
-                                         WB_MEASURED_BIT(WB_MEASURED_TRAVEL),
-                                     WB_STANDARD_GRAVITY, import->from->path, import->why);
-    return WB_OK;
+    return find_columns(import,
+                        WB_MEASURED_BIT(WB_MEASURED_FORCE) | WB_MEASURED_BIT(WB_MEASURED_TRAVEL));
 }
 
 /* --- rows --- */

@@ -14,9 +14,18 @@
 /* Parts of the range over which a marker's displacements are averaged. */
 #define PARTS 10
 
-/* Shapes of the model at equal steps of deflection or follower force, at the arc lengths of all
- * markers. */
+/* A measured marker in a frame. */
+struct point {
+    const struct wb_shape_row *row;
+    double place; /* deflection, m; follower test: force, N */
+    int sample, position;
+};
+
+/* The measured markers, and shapes of the model at equal steps of deflection or follower force, at
+ * the arc lengths of all markers. */
 struct gallery {
+    size_t n_points, room;
+    struct point *points;
     int n_positions, n_frames, n_reached;
     double s[MOST_POSITIONS];
     double *x, *y; /* (n_frames * n_positions) */
@@ -44,21 +53,6 @@ static double force_at(const struct wb_dataset *dataset, double t)
     return a->force + (b->force - a->force) * (t - a->t) / (b->t - a->t);
 }
 
-/* Deflection (follower test: force) of a frame. */
-static double place_of(const struct wb_dataset *dataset, const struct wb_shape_row *row)
-{
-    return dataset->info.is_follower ? force_at(dataset, row->t) : row->deflection;
-}
-
-static bool counts(const struct wb_dataset *dataset, const struct wb_shape_row *row, double end,
-                   double last)
-{
-    if (!(row->t <= end && row->s > 0.0 && isfinite(row->x) && isfinite(row->y)))
-        return false;
-    const double place = place_of(dataset, row);
-    return place >= 0.0 && place <= last * (1.0 + 1e-9);
-}
-
 static int find_position(const struct gallery *gallery, double s)
 {
     for (int i = 0; i < gallery->n_positions; i++) {
@@ -68,21 +62,33 @@ static int find_position(const struct gallery *gallery, double s)
     return -1;
 }
 
-static enum wb_status collect_positions(struct gallery *gallery,
-                                        const struct wb_dataset *const *datasets, int n,
-                                        double last, struct wb_reason *why)
+/* Collects the markers of the first loadings from zero to `last`, and their positions. */
+static enum wb_status collect_points(struct gallery *gallery,
+                                     const struct wb_dataset *const *datasets, int n, double last,
+                                     struct wb_reason *why)
 {
     for (int i = 0; i < n; i++) {
         const double end = end_of_loading(datasets[i]);
         for (size_t k = 0; k < datasets[i]->n_shape_rows; k++) {
             const struct wb_shape_row *const row = &datasets[i]->shape_rows[k];
-            if (!counts(datasets[i], row, end, last) || find_position(gallery, row->s) >= 0)
+            if (!(row->t <= end && row->s > 0.0 && isfinite(row->x) && isfinite(row->y)))
                 continue;
-            if (gallery->n_positions == MOST_POSITIONS)
+            const double place =
+                gallery->is_follower ? force_at(datasets[i], row->t) : row->deflection;
+            if (!(place >= 0.0 && place <= last * (1.0 + 1e-9)))
+                continue;
+            int position = find_position(gallery, row->s);
+            if (position < 0 && gallery->n_positions == MOST_POSITIONS)
                 return wb_fail_to(why, WB_ERR_DATA,
                                   "wire '%s': markers at more than %d arc lengths",
                                   datasets[i]->info.wire, MOST_POSITIONS);
-            gallery->s[gallery->n_positions++] = row->s;
+            if (position < 0) {
+                position = gallery->n_positions++;
+                gallery->s[position] = row->s;
+            }
+            gallery->points = wb_memory_room(gallery->points, &gallery->room, gallery->n_points + 1,
+                                             sizeof *gallery->points);
+            gallery->points[gallery->n_points++] = (struct point){row, place, i, position};
         }
     }
     return WB_OK;
@@ -110,22 +116,22 @@ static enum wb_status fill(struct gallery *gallery, struct wb_computed *computed
 }
 
 /* Displacement of one marker from the model; false if the model did not reach its place. */
-static bool displacement(const struct gallery *gallery, const struct wb_dataset *dataset,
-                         const struct wb_shape_row *row, double *dx, double *dy)
+static bool displacement(const struct gallery *gallery, const struct point *point, double *dx,
+                         double *dy)
 {
-    const double place = place_of(dataset, row) / gallery->step;
+    const double place = point->place / gallery->step;
     int frame = (int)place;
     if (frame == gallery->n_frames - 1)
         frame--;
     if (frame < 0 || frame + 1 >= gallery->n_reached)
         return false;
     const double part = place - frame;
-    const int at = frame * gallery->n_positions + find_position(gallery, row->s);
+    const int at = frame * gallery->n_positions + point->position;
     const int next = at + gallery->n_positions;
     const double x = (1.0 - part) * gallery->x[at] + part * gallery->x[next];
     const double y = (1.0 - part) * gallery->y[at] + part * gallery->y[next];
-    *dx = row->x - x;
-    *dy = row->y - y;
+    *dx = point->row->x - x;
+    *dy = point->row->y - y;
     return true;
 }
 
@@ -134,18 +140,6 @@ struct cell {
     double dx, dy;
     int n;
 };
-
-/* Adds one marker's displacement to its cell. */
-static void add_to_cell(struct cell *cells, const struct gallery *gallery,
-                        const struct wb_dataset *dataset, const struct wb_shape_row *row,
-                        double last, double dx, double dy)
-{
-    const int part = (int)fmin(PARTS * place_of(dataset, row) / last, PARTS - 1.0);
-    struct cell *const cell = &cells[find_position(gallery, row->s) * PARTS + part];
-    cell->dx += dx;
-    cell->dy += dy;
-    cell->n++;
-}
 
 /* Averages over the samples; `cells` has n_positions x PARTS for each. */
 static void average(struct wb_marker_mean *mean, const struct cell *cells, int n_positions, int n)
@@ -182,32 +176,31 @@ static void average(struct wb_marker_mean *mean, const struct cell *cells, int n
     mean->scatter = used > 0 ? sqrt(variance / used) : (double)NAN;
 }
 
-static void compare(struct wb_marker_distance *distance, const struct gallery *gallery,
-                    const struct wb_dataset *const *datasets, int n, double last)
+static void compare(struct wb_marker_distance *distance, const struct gallery *gallery, int n,
+                    double last)
 {
-    const size_t n_cells = (size_t)gallery->n_positions * PARTS;
-    struct cell *const cells = wb_memory_new(n_cells * (size_t)n, sizeof *cells);
-    double squares = 0.0;
-    distance->largest = 0.0;
-    for (int i = 0; i < n; i++) {
-        const double end = end_of_loading(datasets[i]);
-        for (size_t k = 0; k < datasets[i]->n_shape_rows; k++) {
-            const struct wb_shape_row *const row = &datasets[i]->shape_rows[k];
-            double dx, dy;
-            if (!counts(datasets[i], row, end, last) ||
-                !displacement(gallery, datasets[i], row, &dx, &dy))
-                continue;
-            const double d = hypot(dx, dy);
-            add_to_cell(cells + (size_t)i * n_cells, gallery, datasets[i], row, last, dx, dy);
-            squares += d * d;
-            distance->largest = fmax(distance->largest, d);
-            distance->n_points++;
-        }
+    const int n_cells = gallery->n_positions * PARTS;
+    struct cell *const cells = wb_memory_new((size_t)n_cells * (size_t)n, sizeof *cells);
+    double squares = 0.0, largest = 0.0;
+    for (size_t k = 0; k < gallery->n_points; k++) {
+        const struct point *const point = &gallery->points[k];
+        double dx, dy;
+        if (!displacement(gallery, point, &dx, &dy))
+            continue;
+        const int part = (int)fmin(PARTS * point->place / last, PARTS - 1.0);
+        struct cell *const cell = &cells[point->sample * n_cells + point->position * PARTS + part];
+        const double d = hypot(dx, dy);
+        cell->dx += dx;
+        cell->dy += dy;
+        cell->n++;
+        squares += d * d;
+        largest = fmax(largest, d);
+        distance->n_points++;
     }
-    if (distance->n_points > 0)
+    if (distance->n_points > 0) {
         distance->rms = sqrt(squares / distance->n_points);
-    else
-        distance->rms = distance->largest = (double)NAN;
+        distance->largest = largest;
+    }
     average(&distance->mean, cells, gallery->n_positions, n);
     free(cells);
 }
@@ -223,20 +216,20 @@ enum wb_status wb_marker_distance_find(struct wb_marker_distance *distance,
                                         .largest = (double)NAN,
                                         .mean = {.rms = (double)NAN, .scatter = (double)NAN}};
     struct gallery gallery = {.step = step, .is_follower = datasets[0]->info.is_follower};
-    WB_TRY(collect_positions(&gallery, datasets, n, last, wb_computed_reason(computed)));
-    if (gallery.n_positions == 0) {
-        *distance = result;
-        return WB_OK;
+    enum wb_status status =
+        collect_points(&gallery, datasets, n, last, wb_computed_reason(computed));
+    if (status == WB_OK && gallery.n_positions > 0) {
+        gallery.n_frames = (int)ceil(last / step - 1e-9) + 1;
+        const size_t size = (size_t)gallery.n_frames * (size_t)gallery.n_positions;
+        gallery.x = wb_memory_new(size, sizeof *gallery.x);
+        gallery.y = wb_memory_new(size, sizeof *gallery.y);
+        status = fill(&gallery, computed, material);
+        if (status == WB_OK)
+            compare(&result, &gallery, n, last);
     }
-    gallery.n_frames = (int)ceil(last / step - 1e-9) + 1;
-    const size_t size = (size_t)gallery.n_frames * (size_t)gallery.n_positions;
-    gallery.x = wb_memory_new(size, sizeof *gallery.x);
-    gallery.y = wb_memory_new(size, sizeof *gallery.y);
-    const enum wb_status status = fill(&gallery, computed, material);
-    if (status == WB_OK) {
-        compare(&result, &gallery, datasets, n, last);
+    if (status == WB_OK)
         *distance = result;
-    }
+    free(gallery.points);
     free(gallery.x);
     free(gallery.y);
     return status;
