@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/dataset/errors.h"
 #include "analysis/dataset/fit.h"
 #include "analysis/dataset/stops.h"
 #include "base/memory.h"
@@ -317,12 +318,20 @@ static void combine(struct wb_curve *curve, int at, const double *values, int n)
     curve->deviation[at] = n > 1 ? sqrt(squares / (n - 1)) : 0.0;
 }
 
+/* Abscissa up to which all samples reach. */
+static double common_end(const struct loading *loadings, int n)
+{
+    double end = HUGE_VAL;
+    for (int i = 0; i < n; i++)
+        end = fmin(end, loadings[i].points[loadings[i].n - 1].at);
+    return end;
+}
+
 /* Grid points that every sample reaches. */
 static int common_points(const struct loading *loadings, int n, double step)
 {
-    double largest = HUGE_VAL, ignored;
-    for (int i = 0; i < n; i++)
-        largest = fmin(largest, loadings[i].points[loadings[i].n - 1].at);
+    const double largest = common_end(loadings, n);
+    double ignored;
     int points = largest > 0.0 ? (int)fmin(floor(largest / step + 1e-6), 1e6) + 1 : 0;
     /* The last bins may contain only a stray row beyond the turn. */
     for (int dropped = 0; dropped < 2 && points > 0; dropped++) {
@@ -404,10 +413,7 @@ static enum wb_status average(struct wb_curve *curve, const struct loading *load
 /* One step of force per row where the rows are equally spaced and not too many. */
 static double default_force_step(const struct loading *loadings, int n)
 {
-    double largest = HUGE_VAL;
-    for (int i = 0; i < n; i++)
-        largest = fmin(largest, loadings[i].points[loadings[i].n - 1].at);
-    return largest /
+    return common_end(loadings, n) /
            (double)(loadings[0].n - 1 < MOST_FORCE_STEPS ? loadings[0].n - 1 : MOST_FORCE_STEPS);
 }
 
@@ -520,11 +526,7 @@ double wb_curve_scale(const struct wb_curve *curve)
 
 double wb_curve_scatter(const struct wb_curve *curve)
 {
-    double sum = 0.5 * (curve->deviation[0] * curve->deviation[0] +
-                        curve->deviation[curve->n - 1] * curve->deviation[curve->n - 1]);
-    for (int i = 1; i < curve->n - 1; i++)
-        sum += curve->deviation[i] * curve->deviation[i];
-    return sqrt(sum / (curve->n - 1)) / wb_curve_scale(curve);
+    return wb_errors_rms(curve->n, curve->deviation) / wb_curve_scale(curve);
 }
 
 static int known_shapes(const struct wb_dataset *const *datasets, int n)
@@ -547,14 +549,12 @@ void wb_curve_warn_unknown_shapes(const struct wb_dataset *const *datasets, int 
 void wb_curve_mean_info(const struct wb_dataset *const *datasets, int n, struct wb_test_info *info)
 {
     struct wb_test_info mean = datasets[0]->info;
-    const int size = (int)(sizeof mean.natural_shape / sizeof mean.natural_shape[0]);
-    for (int k = 0; k < size; k++)
-        mean.natural_shape[k] = 0.0;
+    memset(mean.natural_shape, 0, sizeof mean.natural_shape);
     mean.n_natural_shape = 0;
     const int known = known_shapes(datasets, n);
     for (int i = 0; i < n; i++) {
         const struct wb_test_info *const one = &datasets[i]->info;
-        for (int k = 0; k < one->n_natural_shape && k < size; k++)
+        for (int k = 0; k < one->n_natural_shape; k++)
             mean.natural_shape[k] += one->natural_shape[k] / known;
         if (one->n_natural_shape > mean.n_natural_shape)
             mean.n_natural_shape = one->n_natural_shape;

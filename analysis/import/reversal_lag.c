@@ -59,21 +59,6 @@ struct problem {
     enum wb_status status;
 };
 
-static struct part take_part(const struct wb_signal *signal, double from, double at, double until)
-{
-    const size_t middle = wb_signal_index(signal, at);
-    struct part part = {
-        .signal = signal,
-        .first = wb_signal_index(signal, from),
-        .last = wb_signal_index(signal, until),
-        .skip_from = at,
-        .skip_until = at,
-        .scale = wb_signal_noise(signal),
-    };
-    part.zero = signal->n > 0 ? signal->x[middle < signal->n ? middle : signal->n - 1] : 0.0;
-    return part;
-}
-
 /* Length of the window between the turn and the other end of the branch, s. */
 static double window_of(const struct wb_signal *signal, double at, double end, double least,
                         double most)
@@ -84,6 +69,27 @@ static double window_of(const struct wb_signal *signal, double at, double end, d
     const double needed =
         way > 0.0 ? WINDOW_NOISES * wb_signal_noise(signal) * fabs(end - at) / way : 0.0;
     return fmin(fmax(least, needed), most);
+}
+
+/* The part of a signal around a turn, in `window` of the full windows. */
+static struct part take_part(const struct wb_signal *signal, const struct wb_reversal *reversal,
+                             double window, double least)
+{
+    const double at = reversal->at, from = reversal->from, until = reversal->until;
+    const enum wb_turn turn = reversal->turn;
+    const double there = (turn == WB_TURN_FROM_REST ? REST_PART : WINDOW_PART) * (at - from);
+    const double back = (turn == WB_TURN_TO_REST ? REST_PART : WINDOW_PART) * (until - at);
+    const size_t middle = wb_signal_index(signal, at);
+    struct part part = {
+        .signal = signal,
+        .first = wb_signal_index(signal, at - window * window_of(signal, at, from, least, there)),
+        .last = wb_signal_index(signal, at + window * window_of(signal, at, until, least, back)),
+        .skip_from = at,
+        .skip_until = at,
+        .scale = wb_signal_noise(signal),
+    };
+    part.zero = signal->n > 0 ? signal->x[middle < signal->n ? middle : signal->n - 1] : 0.0;
+    return part;
 }
 
 static bool is_left_out(const struct part *part, double t)
@@ -233,19 +239,10 @@ static bool find_with(struct wb_reversal_lag *result, const struct wb_signal *mo
                       double filter_delay, double window)
 {
     const int n_rests = reversal->turn == WB_TURN_BACK ? N_RESTS : 1;
-    const double at = reversal->at;
-    const double there =
-        (reversal->turn == WB_TURN_FROM_REST ? REST_PART : WINDOW_PART) * (at - reversal->from);
-    const double back =
-        (reversal->turn == WB_TURN_TO_REST ? REST_PART : WINDOW_PART) * (reversal->until - at);
     struct problem p = {
-        .turn = at,
-        .motion = take_part(
-            motion, at - window * window_of(motion, at, reversal->from, MOTION_WINDOW, there), at,
-            at + window * window_of(motion, at, reversal->until, MOTION_WINDOW, back)),
-        .force = take_part(
-            force, at - window * window_of(force, at, reversal->from, FORCE_WINDOW, there), at,
-            at + window * window_of(force, at, reversal->until, FORCE_WINDOW, back)),
+        .turn = reversal->at,
+        .motion = take_part(motion, reversal, window, MOTION_WINDOW),
+        .force = take_part(force, reversal, window, FORCE_WINDOW),
         .status = WB_OK,
     };
     struct rests rests;
