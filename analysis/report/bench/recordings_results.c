@@ -164,9 +164,6 @@ static void run_align(const struct wb_recordings *campaign, const struct job *jo
     wb_reasons_fail(&reasons, status, &why);
 }
 
-static const char no_recording[] = "no usable recording";
-static const char no_calibration[] = "there is no calibration to validate";
-
 static int usable_datasets(const struct wb_recordings_results_tests *tests,
                            const struct wb_dataset **datasets)
 {
@@ -178,82 +175,68 @@ static int usable_datasets(const struct wb_recordings_results_tests *tests,
     return n;
 }
 
-static enum wb_status calibrate(const struct wb_recordings *campaign,
-                                struct wb_recordings_results_wire *wire,
+/* By the paper's route: the calibration and its error, or the validation. */
+static enum wb_status run_step(const struct wb_recordings *campaign, const struct job *job,
+                               const struct wb_dataset *const *datasets, int n,
+                               struct wb_reason *why)
+{
+    struct wb_recordings_results_wire *const wire = job->wire;
+    const bool calibrates = job->purpose == WB_RECORDINGS_CALIBRATION;
+    if (calibrates) {
+        struct wb_calibrate_settings settings = campaign->head.fit;
+        settings.progress = wb_campaign_go_on;
+        WB_TRY(wb_calibrate_run(&wire->calibration, datasets, n, &settings, why));
+        wb_properties_from_result(&wire->calibration, &wire->properties);
+    }
+    const enum wb_status status =
+        wb_validate_run(&wire->steps[job->purpose].result, &wire->properties, datasets, n,
+                        &campaign->head.fit, why);
+    if (status != WB_OK && calibrates)
+        wb_calibrate_result_release(&wire->calibration);
+    return status;
+}
+
+/* On whole cycles: the calibration, or its prediction of the validation recordings. */
+static enum wb_status run_cycle(const struct wb_recordings *campaign, const struct job *job,
                                 const struct wb_dataset *const *datasets, int n,
                                 struct wb_reason *why)
 {
-    struct wb_calibrate_settings settings = campaign->head.fit;
-    settings.progress = wb_campaign_go_on;
-    WB_TRY(wb_calibrate_run(&wire->calibration, datasets, n, &settings, why));
-    wb_properties_from_result(&wire->calibration, &wire->properties);
-    return WB_OK;
-}
-
-static enum wb_recordings_results_state run_step(const struct wb_recordings *campaign,
-                                                 const struct job *job)
-{
     struct wb_recordings_results_wire *const wire = job->wire;
-    struct wb_recordings_results_step *const step = &wire->steps[job->purpose];
-    const bool calibrates = job->purpose == WB_RECORDINGS_CALIBRATION;
-    const struct wb_dataset **const datasets =
-        wb_memory_new((size_t)step->tests.n, sizeof *datasets);
-    const int n = usable_datasets(&step->tests, datasets);
-    if (n == 0 || (!calibrates && !wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))) {
-        wb_text_append(&step->problem, "%s", n == 0 ? no_recording : no_calibration);
-        free(datasets);
-        return WB_RECORDINGS_MISSING;
-    }
-    const struct wb_reasons reasons = {&step->problem, NULL, NULL};
-    struct wb_reason why = {.text = ""};
-    enum wb_status status = calibrates ? calibrate(campaign, wire, datasets, n, &why) : WB_OK;
-    if (status == WB_OK) {
-        status = wb_validate_run(&step->result, &wire->properties, datasets, n, &campaign->head.fit,
-                                 &why);
-        if (status != WB_OK && calibrates)
-            wb_calibrate_result_release(&wire->calibration);
-    }
-    free(datasets);
-    if (status == WB_OK)
-        return WB_RECORDINGS_DONE;
-    wb_reasons_fail(&reasons, status, &why);
-    return WB_RECORDINGS_FAILED;
-}
-
-/* Predicts the validation recordings with the whole-cycle law. */
-static enum wb_status predict(const struct wb_recordings *campaign,
-                              struct wb_recordings_results_wire *wire,
-                              const struct wb_dataset *const *datasets, int n,
-                              struct wb_reason *why)
-{
     struct wb_properties properties;
+    if (job->purpose == WB_RECORDINGS_CALIBRATION)
+        return wb_recordings_cycle_run(&wire->cycle, datasets, n, why);
     wb_properties_from_cycle(&wire->cycle.calibration, &properties);
     return wb_validate_run(&wire->prediction, &properties, datasets, n, &campaign->head.fit, why);
 }
 
-static void run_cycle(const struct wb_recordings *campaign, const struct job *job)
+/* A step of a wire, whose state is WB_RECORDINGS_MISSING until then. */
+static void run_wire(const struct wb_recordings *campaign, const struct job *job)
 {
     struct wb_recordings_results_wire *const wire = job->wire;
-    const bool calibrates = job->purpose == WB_RECORDINGS_CALIBRATION;
-    const struct wb_recordings_results_tests *const tests = &wire->steps[job->purpose].tests;
-    enum wb_recordings_results_state *const state = &wire->cycle_states[job->purpose];
-    struct wb_text *const problem = &wire->cycle_problems[job->purpose];
-    const struct wb_dataset **const datasets = wb_memory_new((size_t)tests->n, sizeof *datasets);
-    const int n = usable_datasets(tests, datasets);
-    if (n == 0 || (!calibrates && !wb_recordings_results_cycle(wire))) {
-        wb_text_append(problem, "%s", n == 0 ? no_recording : no_calibration);
-        free(datasets);
-        return;
+    struct wb_recordings_results_step *const step = &wire->steps[job->purpose];
+    enum wb_recordings_results_state *const state =
+        job->is_cycle ? &wire->cycle_states[job->purpose] : &step->state;
+    struct wb_text *const problem =
+        job->is_cycle ? &wire->cycle_problems[job->purpose] : &step->problem;
+    const enum wb_recordings_results_state calibration =
+        job->is_cycle ? wire->cycle_states[0] : wire->steps[0].state;
+    const struct wb_dataset **const datasets =
+        wb_memory_new((size_t)step->tests.n, sizeof *datasets);
+    const int n = usable_datasets(&step->tests, datasets);
+    if (n == 0) {
+        wb_text_append(problem, "no usable recording");
+    } else if (job->purpose == WB_RECORDINGS_VALIDATION && calibration != WB_RECORDINGS_DONE) {
+        wb_text_append(problem, "there is no calibration to validate");
+    } else {
+        const struct wb_reasons reasons = {problem, NULL, NULL};
+        struct wb_reason why = {.text = ""};
+        const enum wb_status status = job->is_cycle ? run_cycle(campaign, job, datasets, n, &why)
+                                                    : run_step(campaign, job, datasets, n, &why);
+        *state = status == WB_OK ? WB_RECORDINGS_DONE : WB_RECORDINGS_FAILED;
+        if (status != WB_OK)
+            wb_reasons_fail(&reasons, status, &why);
     }
-    const struct wb_reasons reasons = {problem, NULL, NULL};
-    struct wb_reason why = {.text = ""};
-    const enum wb_status status = calibrates
-                                      ? wb_recordings_cycle_run(&wire->cycle, datasets, n, &why)
-                                      : predict(campaign, wire, datasets, n, &why);
     free(datasets);
-    *state = status == WB_OK ? WB_RECORDINGS_DONE : WB_RECORDINGS_FAILED;
-    if (status != WB_OK)
-        wb_reasons_fail(&reasons, status, &why);
 }
 
 /* --- the schedule --- */
@@ -314,10 +297,8 @@ static void *work(void *context)
         pthread_mutex_unlock(&schedule->lock);
         if (job->test)
             run_align(schedule->results->campaign, job);
-        else if (job->is_cycle)
-            run_cycle(schedule->results->campaign, job);
         else
-            job->wire->steps[job->purpose].state = run_step(schedule->results->campaign, job);
+            run_wire(schedule->results->campaign, job);
         pthread_mutex_lock(&schedule->lock);
         job->state = JOB_FINISHED;
         schedule->n_finished++;
@@ -330,22 +311,15 @@ static void *work(void *context)
     return NULL;
 }
 
-static void add_steps(struct schedule *schedule, enum wb_recordings_purpose purpose)
+static void add_steps(struct schedule *schedule, enum wb_recordings_purpose purpose, bool is_cycle)
 {
     for (int i = 0; i < schedule->results->n_wires; i++) {
         struct wb_recordings_results_wire *const wire = &schedule->results->wires[i];
-        if (wire->steps[purpose].state != WB_RECORDINGS_NOT_WANTED)
-            schedule->jobs[schedule->n++] = (struct job){.purpose = purpose, .wire = wire};
-    }
-}
-
-static void add_cycles(struct schedule *schedule, enum wb_recordings_purpose purpose)
-{
-    for (int i = 0; i < schedule->results->n_wires; i++) {
-        struct wb_recordings_results_wire *const wire = &schedule->results->wires[i];
-        if (wire->cycle_states[purpose] != WB_RECORDINGS_NOT_WANTED)
+        const enum wb_recordings_results_state state =
+            is_cycle ? wire->cycle_states[purpose] : wire->steps[purpose].state;
+        if (state != WB_RECORDINGS_NOT_WANTED)
             schedule->jobs[schedule->n++] =
-                (struct job){.purpose = purpose, .wire = wire, .is_cycle = true};
+                (struct job){.purpose = purpose, .wire = wire, .is_cycle = is_cycle};
     }
 }
 
@@ -365,12 +339,12 @@ static void add_alignments(struct schedule *schedule, enum wb_recordings_purpose
 static void add_jobs(struct schedule *schedule)
 {
     /* The longest first. */
-    add_cycles(schedule, WB_RECORDINGS_CALIBRATION);
-    add_steps(schedule, WB_RECORDINGS_CALIBRATION);
+    add_steps(schedule, WB_RECORDINGS_CALIBRATION, true);
+    add_steps(schedule, WB_RECORDINGS_CALIBRATION, false);
     add_alignments(schedule, WB_RECORDINGS_CALIBRATION);
     add_alignments(schedule, WB_RECORDINGS_VALIDATION);
-    add_cycles(schedule, WB_RECORDINGS_VALIDATION);
-    add_steps(schedule, WB_RECORDINGS_VALIDATION);
+    add_steps(schedule, WB_RECORDINGS_VALIDATION, true);
+    add_steps(schedule, WB_RECORDINGS_VALIDATION, false);
 }
 
 static void run_threads(struct schedule *schedule, int n_threads)
@@ -434,6 +408,11 @@ static void count_test(struct wb_recordings_results *results,
         memcpy(results->latest_utc, test->start_utc, sizeof results->latest_utc);
 }
 
+static bool is_settled(enum wb_recordings_results_state state)
+{
+    return state == WB_RECORDINGS_DONE || state == WB_RECORDINGS_NOT_WANTED;
+}
+
 static void judge_step(struct wb_recordings_results *results,
                        struct wb_recordings_results_wire *wire, enum wb_recordings_purpose purpose)
 {
@@ -444,20 +423,10 @@ static void judge_step(struct wb_recordings_results *results,
             count_test(results, &step->tests, &step->tests.items[i]);
     }
     results->outcome.is_complete &=
-        step->state == WB_RECORDINGS_DONE || step->state == WB_RECORDINGS_NOT_WANTED;
+        is_settled(step->state) && is_settled(wire->cycle_states[purpose]);
     if (step->state == WB_RECORDINGS_DONE && limit > 0.0 &&
         !wb_recordings_results_keeps(results->campaign, wire, purpose))
         results->outcome.exceeds_limit = true;
-}
-
-static void judge_cycle(struct wb_recordings_results *results,
-                        const struct wb_recordings_results_wire *wire)
-{
-    for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++)
-        results->outcome.is_complete &= wire->cycle_states[k] == WB_RECORDINGS_DONE ||
-                                        wire->cycle_states[k] == WB_RECORDINGS_NOT_WANTED;
-    if (results->campaign->pooled_scatter && wb_recordings_results_cycle(wire))
-        wb_recordings_cycle_pool(&results->pool, &wire->cycle);
 }
 
 void wb_recordings_results_judge(struct wb_recordings_results *results)
@@ -467,7 +436,8 @@ void wb_recordings_results_judge(struct wb_recordings_results *results)
     for (int i = 0; i < results->n_wires; i++) {
         judge_step(results, &results->wires[i], WB_RECORDINGS_CALIBRATION);
         judge_step(results, &results->wires[i], WB_RECORDINGS_VALIDATION);
-        judge_cycle(results, &results->wires[i]);
+        if (results->campaign->pooled_scatter && wb_recordings_results_cycle(&results->wires[i]))
+            wb_recordings_cycle_pool(&results->pool, &results->wires[i].cycle);
     }
     wb_recordings_cycle_close(&results->pool);
     results->outcome.is_complete &= results->outcome.n_usable == results->outcome.n_wanted;
