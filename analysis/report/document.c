@@ -91,20 +91,26 @@ void wb_document_heading(struct wb_document *document, int level, const char *an
     block->anchor = copy_text(anchor);
 }
 
+void wb_document_text(struct wb_document *document, enum wb_document_kind kind,
+                      enum wb_document_tone tone, const char *markup)
+{
+    add_block(document, kind, markup)->tone = tone;
+}
+
 void wb_document_paragraph(struct wb_document *document, const char *markup)
 {
-    add_block(document, WB_BLOCK_PARAGRAPH, markup);
+    wb_document_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, markup);
 }
 
 void wb_document_notice(struct wb_document *document, enum wb_document_tone tone,
                         const char *markup)
 {
-    add_block(document, WB_BLOCK_NOTICE, markup)->tone = tone;
+    wb_document_text(document, WB_BLOCK_NOTICE, tone, markup);
 }
 
 void wb_document_item(struct wb_document *document, enum wb_document_tone tone, const char *markup)
 {
-    add_block(document, WB_BLOCK_ITEM, markup)->tone = tone;
+    wb_document_text(document, WB_BLOCK_ITEM, tone, markup);
 }
 
 void wb_document_code(struct wb_document *document, const char *text)
@@ -120,7 +126,7 @@ void wb_document_new_page(struct wb_document *document)
 static char *number_caption(struct wb_document *document, const char *caption)
 {
     struct wb_text text = {0};
-    wb_text_append(&text, "<b>Figure %d.</b> %s", ++document->n_figures, caption ? caption : "");
+    wb_text_append(&text, "<b>Figure %d.</b> %s", ++document->n_figures, caption);
     document->failed |= text.failed;
     return text.bytes;
 }

@@ -91,6 +91,9 @@ void wb_document_move_to_front(struct wb_document *document, int first);
 /* `anchor`: letters, digits and '-'; unique, or "" for none. */
 void wb_document_heading(struct wb_document *document, int level, const char *anchor,
                          const char *text);
+/* A paragraph, a notice or an item. */
+void wb_document_text(struct wb_document *document, enum wb_document_kind kind,
+                      enum wb_document_tone tone, const char *markup);
 void wb_document_paragraph(struct wb_document *document, const char *markup);
 void wb_document_notice(struct wb_document *document, enum wb_document_tone tone,
                         const char *markup);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/config.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "base/version.h"
@@ -115,6 +116,13 @@ void wb_pages_append_symbols(struct wb_text *text, const char *plain)
     }
 }
 
+/* Formatted text, for free(). */
+static char *format_text(const char *format, va_list arguments)
+{
+    char *text;
+    return vasprintf(&text, format, arguments) < 0 ? wb_memory_need(NULL) : text;
+}
+
 char *wb_pages_escape(char *buffer, size_t size, const char *raw)
 {
     struct wb_text text = {0};
@@ -185,15 +193,15 @@ void wb_pages_append_number(struct wb_text *text, double value, int decimals)
 static void put_number(struct wb_document_table *table, enum wb_document_tone tone, double value,
                        int decimals)
 {
-    wb_pages_cell(table, tone, "%s%.*f", minus(value, decimals), decimals, fabs(value));
+    if (isfinite(value))
+        wb_pages_cell(table, tone, "%s%.*f", minus(value, decimals), decimals, fabs(value));
+    else
+        wb_document_cell(table, WB_TONE_QUIET, "\xe2\x80\x93");
 }
 
 void wb_pages_cell_number(struct wb_document_table *table, double value, int decimals)
 {
-    if (isfinite(value))
-        put_number(table, WB_TONE_PLAIN, value, decimals);
-    else
-        wb_document_cell(table, WB_TONE_QUIET, "\xe2\x80\x93");
+    put_number(table, WB_TONE_PLAIN, value, decimals);
 }
 
 void wb_pages_cell_range(struct wb_document_table *table, enum wb_document_tone tone, double low,
@@ -209,24 +217,64 @@ void wb_pages_cell_range(struct wb_document_table *table, enum wb_document_tone 
 void wb_pages_cell_judged(struct wb_document_table *table, double value, int decimals,
                           bool is_limited, bool is_kept)
 {
-    if (is_limited && isfinite(value))
-        put_number(table, is_kept ? WB_TONE_GOOD : WB_TONE_WARNING, value, decimals);
-    else
-        wb_pages_cell_number(table, value, decimals);
+    const enum wb_document_tone judged = is_kept ? WB_TONE_GOOD : WB_TONE_WARNING;
+    put_number(table, is_limited ? judged : WB_TONE_PLAIN, value, decimals);
+}
+
+void wb_pages_cell_rounded(struct wb_document_table *table, double value)
+{
+    wb_pages_cell_number(table, value, wb_pages_decimals(value));
+}
+
+void wb_pages_row(struct wb_document_table *table, bool begins_group, const char *plain)
+{
+    wb_document_row(table, begins_group);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, plain);
+}
+
+void wb_pages_row_pair(struct wb_document_table *table, enum wb_document_tone name_tone,
+                       const char *name, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    char *const value = format_text(format, arguments);
+    va_end(arguments);
+    wb_document_row(table, false);
+    wb_document_cell(table, name_tone, name);
+    wb_pages_cell_plain(table, WB_TONE_PLAIN, value);
+    free(value);
+}
+
+void wb_pages_put(struct wb_document *document, enum wb_document_kind kind,
+                  enum wb_document_tone tone, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    char *const markup = format_text(format, arguments);
+    va_end(arguments);
+    wb_document_text(document, kind, tone, markup);
+    free(markup);
 }
 
 void wb_pages_put_text(struct wb_document *document, enum wb_document_kind kind,
                        enum wb_document_tone tone, struct wb_text *text)
 {
-    const char *const markup = wb_text_string(text);
-    if (kind == WB_BLOCK_NOTICE)
-        wb_document_notice(document, tone, markup);
-    else if (kind == WB_BLOCK_ITEM)
-        wb_document_item(document, tone, markup);
-    else
-        wb_document_paragraph(document, markup);
+    wb_document_text(document, kind, tone, wb_text_string(text));
     document->failed |= text->failed;
     wb_text_release(text);
+}
+
+struct wb_document_table *wb_pages_table(struct wb_document *document, int n_columns,
+                                         const struct wb_document_column *columns,
+                                         const char *caption, ...)
+{
+    va_list arguments;
+    va_start(arguments, caption);
+    char *const markup = format_text(caption, arguments);
+    va_end(arguments);
+    struct wb_document_table *const table = wb_document_table(document, markup, n_columns, columns);
+    free(markup);
+    return table;
 }
 
 struct wb_document_table *wb_pages_start_table(struct wb_document *document,
@@ -264,15 +312,14 @@ void wb_pages_start(struct wb_document *document, const char *kind,
 void wb_pages_put_origin(struct wb_document *document, const struct wb_campaign *campaign,
                          const char *same)
 {
-    char text[2600], name[600], escaped[2200], command[400];
+    char name[600], escaped[2200], command[400];
     wb_document_new_page(document);
     wb_document_heading(document, 1, "provenance", "Provenance");
-    snprintf(text, sizeof text,
-             "Campaign <tt>%s</tt>, SHA-256 <tt>%s</tt>. Written by wirebench %s, revision "
-             "<tt>%s</tt>. The same %s and the same revision give the same bytes:",
-             wb_pages_escape(name, sizeof name, campaign->name), campaign->sha256, wb_version(),
-             wb_version_revision(), same);
-    wb_document_paragraph(document, text);
+    wb_pages_put(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN,
+                 "Campaign <tt>%s</tt>, SHA-256 <tt>%s</tt>. Written by wirebench %s, revision "
+                 "<tt>%s</tt>. The same %s and the same revision give the same bytes:",
+                 wb_pages_escape(name, sizeof name, campaign->name), campaign->sha256, wb_version(),
+                 wb_version_revision(), same);
     snprintf(command, sizeof command, "wirebench report %s -o DIR", campaign->name);
     wb_document_code(document, command);
     if (campaign->notes[0])

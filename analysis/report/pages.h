@@ -21,6 +21,8 @@ void wb_pages_cell_checksum(struct wb_document_table *table, const char *sha256)
 int wb_pages_decimals(double value);
 /* A number with `decimals`, or an en dash when it is not finite. */
 void wb_pages_cell_number(struct wb_document_table *table, double value, int decimals);
+/* A number with three digits that mean something. */
+void wb_pages_cell_rounded(struct wb_document_table *table, double value);
 /* "1.2 to 3.4", or an en dash when an end is not finite. */
 void wb_pages_cell_range(struct wb_document_table *table, enum wb_document_tone tone, double low,
                          double high, int decimals);
@@ -37,17 +39,31 @@ void wb_pages_append_number(struct wb_text *text, double value, int decimals);
  * "C1", "gamma2", "1.2e-03", "+-". */
 void wb_pages_append_symbols(struct wb_text *text, const char *plain);
 
-/* Adds a text of markup as a block of that kind and releases it. */
+/* Adds formatted markup as a block of that kind: a paragraph, a notice or an item. */
+void wb_pages_put(struct wb_document *document, enum wb_document_kind kind,
+                  enum wb_document_tone tone, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* The same of a text of markup, which is released. */
 void wb_pages_put_text(struct wb_document *document, enum wb_document_kind kind,
                        enum wb_document_tone tone, struct wb_text *text);
 /* Adds an item of two plain texts, each behind markup: "<b>", name, "</b>: ", problem. */
 void wb_pages_item(struct wb_document *document, enum wb_document_tone tone, const char *markup,
                    const char *plain, const char *more_markup, const char *more_plain);
 
-/* Starts a table whose caption is a text of markup, which is released. */
+/* Starts a table with a caption of formatted markup, or of a text, which is released. */
+struct wb_document_table *wb_pages_table(struct wb_document *document, int n_columns,
+                                         const struct wb_document_column *columns,
+                                         const char *caption, ...)
+    __attribute__((format(printf, 4, 5)));
 struct wb_document_table *wb_pages_start_table(struct wb_document *document,
                                                struct wb_text *caption, int n_columns,
                                                const struct wb_document_column *columns);
+/* Begins a row with a cell of plain text. */
+void wb_pages_row(struct wb_document_table *table, bool begins_group, const char *plain);
+/* Adds a row of a name (markup) and a formatted value of plain text. */
+void wb_pages_row_pair(struct wb_document_table *table, enum wb_document_tone name_tone,
+                       const char *name, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 /* Starts the document of a report. The program's version stands on every page, with the origin of
  * the data: "virtual rig" (NULL: measured). `date_utc` as of wb_document_init(). */

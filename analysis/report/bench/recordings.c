@@ -6,16 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/config.h"
+#include "analysis/report/pages.h"
 #include "base/memory.h"
 #include "base/units.h"
-#include "daq/recording/index.h"
 
 const char *const wb_recordings_purposes[] = {"calibration", "validation"};
 
 static const char default_index[] = "recordings/index.yaml";
 
-/* What reading needs besides the campaign itself. */
 /* What the campaign's file excludes. */
 struct exclusion {
     char name[256];
@@ -23,6 +21,7 @@ struct exclusion {
     bool is_found; /* a wire of the campaign would have it */
 };
 
+/* What reading needs besides the campaign itself. */
 struct reading {
     struct wb_recordings *campaign;
     int n_excluded;
@@ -281,6 +280,7 @@ static enum wb_status read_wire(const struct reading *reading, const struct wb_c
     WB_TRY(wb_wire_read(path, &wire->product, NULL));
     if (!wire->label[0])
         snprintf(wire->label, sizeof wire->label, "%s", wire->product.name);
+    wb_pages_escape(wire->markup, sizeof wire->markup, wire->label);
     WB_TRY(read_reference(reference, wire));
     for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
         if (campaign->length[k] > 0.0)

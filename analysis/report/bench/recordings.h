@@ -88,7 +88,7 @@ enum wb_recordings_purpose {
 extern const char *const wb_recordings_purposes[WB_RECORDINGS_PURPOSES]; /* "calibration", ... */
 
 struct wb_recordings_wire {
-    char label[64];
+    char label[64], markup[400];            /* for readers, plain and escaped */
     char file[300], sha256[WB_SHA256_TEXT]; /* of the wire's file, as readers name it */
     struct wb_wire product;
     bool has_reference;

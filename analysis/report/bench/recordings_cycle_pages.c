@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "analysis/calibration/cycle/cycle_budget.h"
 #include "analysis/report/pages.h"
@@ -11,11 +12,6 @@
 #include "base/units.h"
 
 /* --- numbers --- */
-
-static void put_number(struct wb_document_table *table, double value)
-{
-    wb_pages_cell_number(table, value, wb_pages_decimals(value));
-}
 
 /* "367 to 432"; a dash where either is not known. */
 static void put_range(struct wb_document_table *table, double low, double high)
@@ -27,16 +23,6 @@ static void put_range(struct wb_document_table *table, double low, double high)
 static const char *minus(double value)
 {
     return value < 0.0 ? "\xe2\x88\x92" : "";
-}
-
-static void put_signed(struct wb_document_table *table, double value, double error)
-{
-    wb_pages_cell(table, WB_TONE_PLAIN, "%s%.2f \xc2\xb1 %.2f", minus(value), fabs(value), error);
-}
-
-static double best_misfit(const struct wb_cycle_calibration *c)
-{
-    return c->ranked[0].misfit;
 }
 
 /* --- sentences that the first page has, too --- */
@@ -59,13 +45,13 @@ void wb_recordings_cycle_pages_append_ranges(struct wb_text *text,
 {
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     const struct wb_estimate *const ratio = &c->residual_curvature_ratio;
-    wb_text_append(
-        text,
-        "unloading stiffness between %.*f and %.*f N mm\xc2\xb2, residual curvature ratio "
-        "between %.3f and %.3f, over the laws that fit about as well.",
-        wb_pages_decimals(stiffness->candidates_low / WB_NMM2), stiffness->candidates_low / WB_NMM2,
-        wb_pages_decimals(stiffness->candidates_high / WB_NMM2),
-        stiffness->candidates_high / WB_NMM2, ratio->candidates_low, ratio->candidates_high);
+    const double low = stiffness->candidates_low / WB_NMM2;
+    const double high = stiffness->candidates_high / WB_NMM2;
+    wb_text_append(text,
+                   "unloading stiffness between %.*f and %.*f N mm\xc2\xb2, residual curvature "
+                   "ratio between %.3f and %.3f, over the laws that fit about as well.",
+                   wb_pages_decimals(low), low, wb_pages_decimals(high), high,
+                   ratio->candidates_low, ratio->candidates_high);
 }
 
 /* --- tables of all wires --- */
@@ -83,8 +69,7 @@ static void put_verdict(struct wb_document_table *table, const struct wb_cycle_c
 static void put_wire(struct wb_document_table *table, const struct wb_recordings_results_wire *wire)
 {
     const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
-    wb_document_row(table, false);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, wire->wanted->label);
+    wb_pages_row(table, false, wire->wanted->label);
     if (!cycle) {
         wb_pages_cell(table, WB_TONE_WARNING, "missing");
         return;
@@ -95,13 +80,13 @@ static void put_wire(struct wb_document_table *table, const struct wb_recordings
     const double none = (double)NAN;
     /* Where no law fits the data, only the range over laws is known. */
     const bool is_known = c->is_followed || !c->has_unloading;
-    put_number(table, is_known ? stiffness->value / WB_NMM2 : none);
+    wb_pages_cell_rounded(table, is_known ? stiffness->value / WB_NMM2 : none);
     put_range(table, is_known ? stiffness->low / WB_NMM2 : none, stiffness->high / WB_NMM2);
     put_range(table, stiffness->candidates_low / WB_NMM2, stiffness->candidates_high / WB_NMM2);
-    put_number(table, is_known && c->has_unloading ? back->value : none);
+    wb_pages_cell_rounded(table, is_known && c->has_unloading ? back->value : none);
     put_range(table, c->has_unloading ? back->candidates_low : none, back->candidates_high);
     put_verdict(table, c);
-    wb_pages_cell_number(table, 100.0 * best_misfit(c), 2);
+    wb_pages_cell_number(table, 100.0 * c->ranked[0].misfit, 2);
 }
 
 static void put_laws(struct wb_document *document, const struct wb_recordings_results *results)
@@ -116,18 +101,16 @@ static void put_laws(struct wb_document *document, const struct wb_recordings_re
         {"Law and hardening rule"},
         {.heading = "Misfit (%)", .right = true, .wraps = true},
     };
-    struct wb_text caption = {0};
-    wb_text_append(
-        &caption,
+    struct wb_document_table *const table = wb_document_table(
+        document,
         "From the first loading and unloading of each sample. Stiffness: change of the moment over "
         "that of the curvature, of the first 1 /m during unloading from the largest curvature; "
         "where there is no unloading, from straight to 1 /m. Residual curvature ratio: curvature "
-        "that remains at zero moment, over the curvature that the wire was bent to. 95 %%: "
-        "interval from all contributions that the uncertainty budgets state. Over laws: range over "
-        "all laws whose misfit is at most twice the best. Misfit: RMS of the best law over loading "
-        "and "
-        "unloading, over <i>F</i><sub>max</sub>; above 3 %% only ranges are given.");
-    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 8, columns);
+        "that remains at zero moment, over the curvature that the wire was bent to. 95 %: interval "
+        "from all contributions that the uncertainty budgets state. Over laws: range over all laws "
+        "whose misfit is at most twice the best. Misfit: RMS of the best law over loading and "
+        "unloading, over <i>F</i><sub>max</sub>; above 3 % only ranges are given.",
+        WB_COUNT(columns), columns);
     for (int i = 0; i < results->n_wires; i++)
         put_wire(table, &results->wires[i]);
 }
@@ -135,9 +118,8 @@ static void put_laws(struct wb_document *document, const struct wb_recordings_re
 static void start_moments_row(struct wb_document_table *table, bool begins_group, const char *wire,
                               enum wb_document_tone tone, const char *name)
 {
-    wb_document_row(table, begins_group);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, wire);
-    wb_pages_cell(table, tone, "%s", name);
+    wb_pages_row(table, begins_group, wire);
+    wb_document_cell(table, tone, name);
 }
 
 /* Where no law fits the data, only the range over laws. */
@@ -152,10 +134,10 @@ static void put_moments_of(struct wb_document_table *table,
     const bool is_refuted = wb_recordings_cycle_is_refuted(cycle);
     start_moments_row(table, true, wire->wanted->label, WB_TONE_QUIET, "<i>\xce\xba</i> (1/m)");
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
-        put_number(table, c->curvature[k]);
+        wb_pages_cell_rounded(table, c->curvature[k]);
     start_moments_row(table, false, "", WB_TONE_PLAIN, "<i>M</i> (N mm)");
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
-        put_number(table, is_refuted ? (double)NAN : M[k].value / WB_NMM);
+        wb_pages_cell_rounded(table, is_refuted ? (double)NAN : M[k].value / WB_NMM);
     start_moments_row(table, false, "", WB_TONE_QUIET, is_refuted ? "over laws" : "95 %");
     for (int k = 0; k < WB_CYCLE_MOMENTS; k++)
         put_range(table, (is_refuted ? M[k].candidates_low : M[k].low) / WB_NMM,
@@ -173,20 +155,18 @@ static void put_stiffness_row(struct wb_document_table *table, const struct wb_c
         const struct wb_estimate *const e = wb_cycle_stiffness_at(stiffness, curvature);
         const enum wb_document_tone tone =
             curvature < stiffness->resolved ? WB_TONE_QUIET : WB_TONE_PLAIN;
+        const int decimals = e ? wb_pages_decimals(e->value / WB_NMM2) : 0;
         if (!e || c->largest_curvature < curvature)
-            wb_pages_cell(table, WB_TONE_QUIET, "\xe2\x80\x93");
+            wb_pages_cell_number(table, (double)NAN, 0);
         else if (is_refuted)
             wb_pages_cell_range(table, tone, e->candidates_low / WB_NMM2,
                                 e->candidates_high / WB_NMM2,
                                 wb_pages_decimals(e->candidates_high / WB_NMM2));
         else if (isfinite(e->low))
-            wb_pages_cell(table, tone, "%.*f (%.*f to %.*f)", wb_pages_decimals(e->value / WB_NMM2),
-                          e->value / WB_NMM2, wb_pages_decimals(e->value / WB_NMM2),
-                          e->low / WB_NMM2, wb_pages_decimals(e->value / WB_NMM2),
-                          e->high / WB_NMM2);
+            wb_pages_cell(table, tone, "%.*f (%.*f to %.*f)", decimals, e->value / WB_NMM2,
+                          decimals, e->low / WB_NMM2, decimals, e->high / WB_NMM2);
         else
-            wb_pages_cell(table, tone, "%.*f", wb_pages_decimals(e->value / WB_NMM2),
-                          e->value / WB_NMM2);
+            wb_pages_cell(table, tone, "%.*f", decimals, e->value / WB_NMM2);
     }
 }
 
@@ -206,7 +186,7 @@ static void put_stiffness_of(struct wb_document_table *table,
     start_moments_row(table, true, wire->wanted->label, WB_TONE_PLAIN, "unloading");
     wb_pages_cell_number(table, c->unloading.n > 0 ? c->unloading.resolved : (double)NAN, 2);
     put_stiffness_row(table, c, &c->unloading, is_refuted);
-    put_number(table, is_refuted ? (double)NAN : EI->value / WB_NMM2);
+    wb_pages_cell_rounded(table, is_refuted ? (double)NAN : EI->value / WB_NMM2);
     start_moments_row(table, false, "", WB_TONE_PLAIN, "secant");
     wb_pages_cell_number(table, c->secant.resolved, 2);
     put_stiffness_row(table, c, &c->secant, is_refuted);
@@ -271,8 +251,7 @@ static void put_prediction_of(struct wb_document_table *table,
                               const struct wb_recordings_results_wire *wire)
 {
     const struct wb_validate_result *const p = wb_recordings_results_prediction(wire);
-    wb_document_row(table, false);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, wire->wanted->label);
+    wb_pages_row(table, false, wire->wanted->label);
     if (!p) {
         wb_pages_cell(table, WB_TONE_WARNING, "missing");
         return;
@@ -301,49 +280,61 @@ static void put_predictions(struct wb_document *document,
         {.heading = "<i>F</i><sub>max</sub> (mN)", .right = true, .wraps = true},
     };
     const double *const length = results->campaign->length;
-    struct wb_text caption = {0};
-    wb_text_append(&caption,
-                   "Mean of the samples of %g mm beside the prediction by the laws of the %g mm "
-                   "samples; RMS over <i>F</i><sub>max</sub>. Bound: exceeded on loading or in "
-                   "another part in one of twenty validations of a right law, because specimens "
-                   "differ. Residual deflection: where the force during "
-                   "unloading has come down to that at zero deflection.",
-                   length[WB_RECORDINGS_VALIDATION] / WB_MM,
-                   length[WB_RECORDINGS_CALIBRATION] / WB_MM);
     wb_document_heading(document, 2, "prediction", "How well another length is predicted");
-    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 8, columns);
+    struct wb_document_table *const table = wb_pages_table(
+        document, WB_COUNT(columns), columns,
+        "Mean of the samples of %g mm beside the prediction by the laws of the %g mm samples; RMS "
+        "over <i>F</i><sub>max</sub>. Bound: exceeded on loading or in another part in one of "
+        "twenty validations of a right law, because specimens differ. Residual deflection: where "
+        "the force during unloading has come down to that at zero deflection.",
+        length[WB_RECORDINGS_VALIDATION] / WB_MM, length[WB_RECORDINGS_CALIBRATION] / WB_MM);
     for (int i = 0; i < results->n_wires; i++)
         put_prediction_of(table, &results->wires[i]);
 }
 
-/* A score of both routes; NaN: none. */
-struct score {
-    const char *name, *unit;
-    double cycle, paper; /* in the unit */
-    int decimals;
-};
-
-static void put_score(struct wb_document_table *table, const struct score *score)
+void wb_recordings_cycle_pages_put_pair(struct wb_document_table *table, const char *name,
+                                        const char *unit, const double values[2], int decimals)
 {
     wb_document_row(table, false);
-    wb_pages_cell(table, WB_TONE_PLAIN, "%s", score->name);
-    wb_pages_cell(table, WB_TONE_QUIET, "%s", score->unit);
-    wb_pages_cell_number(table, score->cycle, score->decimals);
-    wb_pages_cell_number(table, score->paper, score->decimals);
+    wb_document_cell(table, WB_TONE_PLAIN, name);
+    wb_document_cell(table, WB_TONE_QUIET, unit);
+    for (int i = 0; i < 2; i++)
+        wb_pages_cell_number(table, values[i], decimals);
+}
+
+void wb_recordings_cycle_pages_put_scores(struct wb_document_table *table,
+                                          const struct wb_recordings_cycle_pages_score *rows,
+                                          size_t n,
+                                          const struct wb_validate_result *const results[2])
+{
+    for (size_t k = 0; k < n; k++) {
+        const struct wb_recordings_cycle_pages_score *const row = &rows[k];
+        double values[2] = {(double)NAN, (double)NAN};
+        for (int i = 0; i < 2; i++) {
+            const struct wb_validate_result *const of = results[i];
+            if (of && !(row->needs_scatter && of->curve.n_samples < 2) &&
+                !(row->needs_unloading && of->cycles.n_samples == 0))
+                memcpy(&values[i], (const char *)of + row->offset, sizeof values[i]);
+            values[i] /= row->in_unit;
+        }
+        wb_recordings_cycle_pages_put_pair(table, row->name, row->unit, values, row->decimals);
+    }
 }
 
 /* The measured and the computed energy of a later cycle. */
 static void put_loop(struct wb_document_table *table, const struct wb_validate_cycles *cycle,
                      const struct wb_validate_cycles *paper, int i)
 {
-    char names[2][60];
+    char name[60];
     const struct wb_validate_loop *const loop = &cycle->loops[i];
     const double other = paper && i < paper->n_loops ? paper->loops[i].computed : (double)NAN;
-    snprintf(names[0], sizeof names[0], "Energy lost in cycle %d, measured", loop->cycle);
-    snprintf(names[1], sizeof names[1], "Energy lost in cycle %d, predicted", loop->cycle);
-    put_score(table, &(struct score){names[0], "mJ", loop->measured / WB_MJ,
-                                     paper ? loop->measured / WB_MJ : (double)NAN, 3});
-    put_score(table, &(struct score){names[1], "mJ", loop->computed / WB_MJ, other / WB_MJ, 3});
+    const double measured[2] = {loop->measured / WB_MJ,
+                                paper ? loop->measured / WB_MJ : (double)NAN};
+    const double predicted[2] = {loop->computed / WB_MJ, other / WB_MJ};
+    snprintf(name, sizeof name, "Energy lost in cycle %d, measured", loop->cycle);
+    wb_recordings_cycle_pages_put_pair(table, name, "mJ", measured, 3);
+    snprintf(name, sizeof name, "Energy lost in cycle %d, predicted", loop->cycle);
+    wb_recordings_cycle_pages_put_pair(table, name, "mJ", predicted, 3);
 }
 
 static void put_bounds(struct wb_document *document, const struct wb_validate_result *p)
@@ -361,11 +352,14 @@ static void put_bounds(struct wb_document *document, const struct wb_validate_re
         wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
         return;
     }
-    wb_text_append(&text,
-                   "No bound is exceeded: the scatter of specimens explains the differences. A "
-                   "right law exceeds one of the bounds in one of twenty validations.");
-    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
+    wb_document_paragraph(document,
+                          "No bound is exceeded: the scatter of specimens explains the "
+                          "differences. A right law exceeds one of the bounds in one of twenty "
+                          "validations.");
 }
+
+#define PART "% of <i>F</i><sub>max</sub>"
+#define OF(member) offsetof(struct wb_validate_result, member)
 
 static void put_scores(struct wb_document *document, const struct wb_recordings_results_wire *wire)
 {
@@ -375,55 +369,42 @@ static void put_scores(struct wb_document *document, const struct wb_recordings_
         {.heading = "Loading and unloading", .right = true},
         {.heading = "Paper's route", .right = true},
     };
+    static const struct wb_recordings_cycle_pages_score scores[] = {
+        {"Loading, RMS", PART, OF(elastoplastic.rms), WB_PERCENT, 2},
+        {"Loading, largest error", PART, OF(elastoplastic.max_error), WB_PERCENT, 2},
+        {"Loading, bound of the RMS", PART, OF(bounds[WB_VALIDATE_LOADING].bound), WB_PERCENT, 2},
+        {"Unloading, RMS", PART, OF(cycles.rms), WB_PERCENT, 2, .needs_unloading = true},
+        {"Unloading, largest error", PART, OF(cycles.largest_error), WB_PERCENT, 2,
+         .needs_unloading = true},
+        {"Unloading with each sample as stiff as its loading, RMS", PART,
+         OF(bounds[WB_VALIDATE_UNLOADING].found), WB_PERCENT, 2},
+        {"Unloading, bound", PART, OF(bounds[WB_VALIDATE_UNLOADING].bound), WB_PERCENT, 2},
+        {"Residual deflection, measured", "mm", OF(cycles.residual_measured), WB_MM, 2,
+         .needs_unloading = true},
+        {"Residual deflection, predicted", "mm", OF(cycles.residual_computed), WB_MM, 2,
+         .needs_unloading = true},
+        {"Residual deflection with each sample as stiff, off by", "mm",
+         OF(bounds[WB_VALIDATE_RESIDUAL].found), WB_MM, 2},
+        {"Residual deflection, bound", "mm", OF(bounds[WB_VALIDATE_RESIDUAL].bound), WB_MM, 2},
+        {"Shapes, RMS of the mean displacement over the samples", "mm",
+         OF(bounds[WB_VALIDATE_SHAPES].found), WB_MM, 2},
+        {"Shapes, bound", "mm", OF(bounds[WB_VALIDATE_SHAPES].bound), WB_MM, 2},
+        {"Shapes, RMS distance", "mm", OF(shape_rms), WB_MM, 2},
+    };
     const struct wb_validate_result *const p = wb_recordings_results_prediction(wire);
     const struct wb_validate_result *const q =
         wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
-    const char *const part = "% of <i>F</i><sub>max</sub>";
-    const double none = (double)NAN;
     if (!p)
         return;
-    const bool p_back = p->cycles.n_samples > 0, q_back = q && q->cycles.n_samples > 0;
-    const struct wb_validate_cycles *const a = &p->cycles, *const b = q ? &q->cycles : NULL;
-    const struct score scores[] = {
-        {"Loading, RMS", part, 100.0 * p->elastoplastic.rms,
-         q ? 100.0 * q->elastoplastic.rms : none, 2},
-        {"Loading, largest error", part, 100.0 * p->elastoplastic.max_error,
-         q ? 100.0 * q->elastoplastic.max_error : none, 2},
-        {"Loading, bound of the RMS", part, 100.0 * p->bounds[WB_VALIDATE_LOADING].bound,
-         q ? 100.0 * q->bounds[WB_VALIDATE_LOADING].bound : none, 2},
-        {"Unloading, RMS", part, p_back ? 100.0 * a->rms : none, q_back ? 100.0 * b->rms : none, 2},
-        {"Unloading, largest error", part, p_back ? 100.0 * a->largest_error : none,
-         q_back ? 100.0 * b->largest_error : none, 2},
-        {"Unloading with each sample as stiff as its loading, RMS", part,
-         100.0 * p->bounds[WB_VALIDATE_UNLOADING].found,
-         q ? 100.0 * q->bounds[WB_VALIDATE_UNLOADING].found : none, 2},
-        {"Unloading, bound", part, 100.0 * p->bounds[WB_VALIDATE_UNLOADING].bound,
-         q ? 100.0 * q->bounds[WB_VALIDATE_UNLOADING].bound : none, 2},
-        {"Residual deflection, measured", "mm", p_back ? a->residual_measured / WB_MM : none,
-         q_back ? b->residual_measured / WB_MM : none, 2},
-        {"Residual deflection, predicted", "mm", p_back ? a->residual_computed / WB_MM : none,
-         q_back ? b->residual_computed / WB_MM : none, 2},
-        {"Residual deflection with each sample as stiff, off by", "mm",
-         p->bounds[WB_VALIDATE_RESIDUAL].found / WB_MM,
-         q ? q->bounds[WB_VALIDATE_RESIDUAL].found / WB_MM : none, 2},
-        {"Residual deflection, bound", "mm", p->bounds[WB_VALIDATE_RESIDUAL].bound / WB_MM,
-         q ? q->bounds[WB_VALIDATE_RESIDUAL].bound / WB_MM : none, 2},
-        {"Shapes, RMS of the mean displacement over the samples", "mm",
-         p->bounds[WB_VALIDATE_SHAPES].found / WB_MM,
-         q ? q->bounds[WB_VALIDATE_SHAPES].found / WB_MM : none, 2},
-        {"Shapes, bound", "mm", p->bounds[WB_VALIDATE_SHAPES].bound / WB_MM,
-         q ? q->bounds[WB_VALIDATE_SHAPES].bound / WB_MM : none, 2},
-        {"Shapes, RMS distance", "mm", p->shape_rms / WB_MM, q ? q->shape_rms / WB_MM : none, 2},
-    };
     struct wb_document_table *const table = wb_document_table(
         document,
         "The same samples by the law of this chapter and by that of the paper's route, for each "
         "part of the test.",
-        4, columns);
-    for (size_t i = 0; i < sizeof scores / sizeof scores[0]; i++)
-        put_score(table, &scores[i]);
-    for (int i = 0; i < a->n_loops; i++)
-        put_loop(table, a, b, i);
+        WB_COUNT(columns), columns);
+    wb_recordings_cycle_pages_put_scores(table, scores, WB_COUNT(scores),
+                                         (const struct wb_validate_result *[2]){p, q});
+    for (int i = 0; i < p->cycles.n_loops; i++)
+        put_loop(table, &p->cycles, q ? &q->cycles : NULL, i);
     put_bounds(document, p);
     if (p->is_beyond)
         wb_document_notice(document, WB_TONE_WARNING,
@@ -502,7 +483,7 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
         wb_text_append(&text,
                        "<b>No law fits the data.</b> The best misses loading and unloading by "
                        "%.2f %% of <i>F</i><sub>max</sub>: ",
-                       100.0 * best_misfit(c));
+                       100.0 * c->ranked[0].misfit);
         wb_recordings_cycle_pages_append_ranges(&text, c);
         wb_text_append(&text, " ");
     } else {
@@ -543,17 +524,15 @@ static void put_ranked(struct wb_document *document, const struct wb_cycle_calib
         {.heading = "Residual ratio", .right = true},
         {""},
     };
-    struct wb_text caption = {0};
-    wb_text_append(
-        &caption,
+    wb_document_heading(document, 2, "", "Laws and hardening rules");
+    struct wb_document_table *const table = wb_pages_table(
+        document, WB_COUNT(columns), columns,
         "Misfit: RMS over loading and unloading, over <i>F</i><sub>max</sub>; repeat noise of the "
         "readings %.3f %%. Weight: from the misfit and the number of free parameters (Schwarz's "
         "criterion), with %.0f independent residuals of a specimen, because neighbouring "
         "residuals are correlated. The law of the largest weight is chosen. In range: misfit at "
         "most twice the best.",
         100.0 * c->repeat_noise, c->n_independent);
-    wb_document_heading(document, 2, "", "Laws and hardening rules");
-    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 7, columns);
     for (int i = 0; i < c->n_ranked; i++) {
         const struct wb_cycle_rank *const rank = &c->ranked[i];
         const bool is_chosen = rank->candidate == c->chosen;
@@ -563,8 +542,9 @@ static void put_ranked(struct wb_document *document, const struct wb_cycle_calib
         wb_pages_cell_number(table, 100.0 * rank->misfit, 3);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", rank->n_free);
         wb_pages_cell_number(table, rank->weight, 3);
-        put_number(table, rank->rigidity.value / WB_NMM2);
-        put_number(table, c->has_unloading ? rank->residual_curvature_ratio.value : (double)NAN);
+        wb_pages_cell_rounded(table, rank->rigidity.value / WB_NMM2);
+        wb_pages_cell_rounded(table, c->has_unloading ? rank->residual_curvature_ratio.value
+                                                      : (double)NAN);
         wb_pages_cell(table, rank->counts ? WB_TONE_PLAIN : WB_TONE_QUIET,
                       is_chosen      ? "chosen"
                       : rank->counts ? "in range"
@@ -576,19 +556,17 @@ static void put_ranked_numbers(struct wb_document *document, const struct wb_cyc
 {
     static const struct wb_document_column columns[] = {{"Law"},
                                                         {.heading = "Parameters", .wraps = true}};
-    struct wb_text caption = {0};
-    wb_text_append(
-        &caption,
-        "Parameters of the laws in range: means over the samples, of Ludwik's law of logarithms.");
-    struct wb_document_table *const table = wb_pages_start_table(document, &caption, 2, columns);
+    struct wb_document_table *const table = wb_document_table(
+        document,
+        "Parameters of the laws in range: means over the samples, of Ludwik's law of logarithms.",
+        WB_COUNT(columns), columns);
     for (int i = 0; i < c->n_ranked; i++) {
         struct wb_text numbers = {0}, typeset = {0};
         if (!c->ranked[i].counts)
             continue;
         wb_law_append_numbers(&numbers, &c->ranked[i].law);
         wb_pages_append_symbols(&typeset, wb_text_string(&numbers));
-        wb_document_row(table, false);
-        wb_pages_cell(table, WB_TONE_PLAIN, "%s", wb_candidate_name(c->ranked[i].candidate));
+        wb_pages_row(table, false, wb_candidate_name(c->ranked[i].candidate));
         wb_document_cell(table, WB_TONE_PLAIN, wb_text_string(&typeset));
         wb_text_release(&numbers);
         wb_text_release(&typeset);
@@ -615,7 +593,8 @@ static void put_bows(struct wb_document *document, const struct wb_cycle_calibra
         const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, member->data.info.length);
         wb_document_row(table, false);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", member->sample);
-        put_signed(table, bow.tip / WB_MM, bow.deviation / WB_MM);
+        wb_pages_cell(table, WB_TONE_PLAIN, "%s%.2f \xc2\xb1 %.2f", minus(bow.tip),
+                      fabs(bow.tip / WB_MM), bow.deviation / WB_MM);
         wb_pages_cell_number(table, bow.uneven / WB_MM, 2);
         wb_pages_cell_number(table, fit->level / WB_MM, 2);
     }
@@ -648,9 +627,9 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
         const struct wb_cycle_fit *const fit = &answer->fit;
         wb_document_row(table, false);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", member->sample);
-        put_number(table, answer->value[WB_CYCLE_RIGIDITY] / WB_NMM2);
-        put_number(table,
-                   c->has_unloading ? answer->value[WB_CYCLE_RESIDUAL_CURVATURE] : (double)NAN);
+        wb_pages_cell_rounded(table, answer->value[WB_CYCLE_RIGIDITY] / WB_NMM2);
+        wb_pages_cell_rounded(table, c->has_unloading ? answer->value[WB_CYCLE_RESIDUAL_CURVATURE]
+                                                      : (double)NAN);
         wb_pages_cell_number(table, member->data.residual_deflection / WB_MM, 1);
         wb_pages_cell_number(table, 100.0 * fit->loading_misfit, 3);
         wb_pages_cell_number(table, 100.0 * fit->unloading_misfit, 3);
@@ -681,8 +660,7 @@ static void put_budget(struct wb_document *document, const struct wb_cycle_calib
         if (!wb_cycle_budget_has(c, i))
             continue;
         wb_cycle_budget_row(c, i, name);
-        wb_document_row(table, false);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, name);
+        wb_pages_row(table, false, name);
         for (int k = 0; k < n; k++) {
             bool is_stated;
             const double u = wb_cycle_budget_cell(&c->budget[numbers[k].number], i, &is_stated);
@@ -693,19 +671,15 @@ static void put_budget(struct wb_document *document, const struct wb_cycle_calib
                               is_stated ? "%.2f" : "(%.2f)", 100.0 * u);
         }
     }
-    static const char *const last[] = {"Combined", "Degrees of freedom", "Factor for 95 %"};
-    for (int i = 0; i < 3; i++) {
-        wb_document_row(table, false);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, last[i]);
-        for (int k = 0; k < n; k++) {
-            const struct wb_budget *const budget = &c->budget[numbers[k].number];
-            wb_pages_cell_number(table,
-                                 i == 0   ? 100.0 * budget->combined
-                                 : i == 1 ? budget->effective_degrees
-                                          : budget->factor,
-                                 i == 1 ? 1 : 2);
-        }
-    }
+    wb_pages_row(table, false, "Combined");
+    for (int k = 0; k < n; k++)
+        wb_pages_cell_number(table, 100.0 * c->budget[numbers[k].number].combined, 2);
+    wb_pages_row(table, false, "Degrees of freedom");
+    for (int k = 0; k < n; k++)
+        wb_pages_cell_number(table, c->budget[numbers[k].number].effective_degrees, 1);
+    wb_pages_row(table, false, "Factor for 95 %");
+    for (int k = 0; k < n; k++)
+        wb_pages_cell_number(table, c->budget[numbers[k].number].factor, 2);
 }
 
 /* A parameter of a Ludwik law, shown only where the data determine it. */
@@ -721,31 +695,28 @@ static void append_known(struct wb_text *text, const char *name, double value, i
 static void put_parts(struct wb_document *document, const struct wb_law *law)
 {
     struct wb_document_column columns[WB_DOCUMENT_COLUMNS] = {{"Part"}};
-    char headings[WB_DOCUMENT_COLUMNS][8], caption[300];
+    char headings[WB_DOCUMENT_COLUMNS][8];
     const int n = law->n_parts < WB_DOCUMENT_COLUMNS ? law->n_parts : WB_DOCUMENT_COLUMNS - 1;
     for (int i = 0; i < n; i++) {
         snprintf(headings[i], sizeof headings[i], "%d", i + 1);
         columns[1 + i] = (struct wb_document_column){.heading = headings[i], .right = true};
     }
-    snprintf(caption, sizeof caption,
-             "Parts side by side that share the strain, each elastic up to its yield strain; means "
-             "over the samples. Hardening: %s. %s: %.3g.",
-             wb_law_rule_name(law),
-             law->is_combined ? "Tangent modulus of a yielded part over its modulus"
-                              : "Share of the area with isotropic hardening",
-             law->isotropic_share);
-    struct wb_document_table *const table = wb_document_table(document, caption, 1 + n, columns);
-    wb_document_row(table, false);
-    wb_pages_cell(table, WB_TONE_PLAIN, "Modulus (MPa)");
+    struct wb_document_table *const table = wb_pages_table(
+        document, 1 + n, columns,
+        "Parts side by side that share the strain, each elastic up to its yield strain; means over "
+        "the samples. Hardening: %s. %s: %.3g.",
+        wb_law_rule_name(law),
+        law->is_combined ? "Tangent modulus of a yielded part over its modulus"
+                         : "Share of the area with isotropic hardening",
+        law->isotropic_share);
+    wb_pages_row(table, false, "Modulus (MPa)");
     for (int i = 0; i < n; i++)
-        put_number(table, law->parts[i].modulus / WB_MPA);
+        wb_pages_cell_rounded(table, law->parts[i].modulus / WB_MPA);
     wb_document_row(table, false);
-    wb_pages_cell(table, WB_TONE_PLAIN,
-                  "Yield strain (10<sup>\xe2\x88\x92"
-                  "3</sup>)");
+    wb_document_cell(table, WB_TONE_PLAIN, "Yield strain (10<sup>\xe2\x88\x92\x33</sup>)");
     for (int i = 0; i < n; i++) {
         if (isfinite(law->parts[i].yield_strain))
-            put_number(table, 1e3 * law->parts[i].yield_strain);
+            wb_pages_cell_rounded(table, 1e3 * law->parts[i].yield_strain);
         else
             wb_pages_cell(table, WB_TONE_QUIET, "elastic");
     }
@@ -757,27 +728,24 @@ static void put_chaboche(struct wb_document *document, const struct wb_law *law)
                                                  {.heading = "Modulus (MPa)", .right = true},
                                                  {.heading = "Rate", .right = true},
                                                  {.heading = "Saturates at (MPa)", .right = true}};
-    char caption[400];
-    snprintf(caption, sizeof caption,
-             "Chaboche's law: <i>E</i> = %.0f MPa; yields at %.3f MPa on either side of the sum of "
-             "the back stresses, and this yield stress grows. Modulus: initial slope over plastic "
-             "strain; rate: <i>\xce\xb3</i> of a back stress, <i>b</i> of the yield stress. "
-             "Means over the samples.",
-             law->material.youngs_modulus / WB_MPA, law->material.yield_stress / WB_MPA);
-    struct wb_document_table *const table =
-        wb_document_table(document, caption, WB_COUNT(columns), columns);
+    struct wb_document_table *const table = wb_pages_table(
+        document, WB_COUNT(columns), columns,
+        "Chaboche's law: <i>E</i> = %.0f MPa; yields at %.3f MPa on either side of the sum of the "
+        "back stresses, and this yield stress grows. Modulus: initial slope over plastic strain; "
+        "rate: <i>\xce\xb3</i> of a back stress, <i>b</i> of the yield stress. Means over the "
+        "samples.",
+        law->material.youngs_modulus / WB_MPA, law->material.yield_stress / WB_MPA);
     for (int i = -1; i < law->n_backs; i++) {
         char name[40];
         const bool grows = i < 0;
         const double modulus = grows ? law->saturation * law->rate : law->backs[i].modulus;
         const double rate = grows ? law->rate : law->backs[i].recovery;
         snprintf(name, sizeof name, grows ? "yield stress" : "back stress %d", i + 1);
-        wb_document_row(table, false);
-        wb_pages_cell(table, WB_TONE_PLAIN, "%s", name);
-        put_number(table, modulus / WB_MPA);
-        put_number(table, rate);
+        wb_pages_row(table, false, name);
+        wb_pages_cell_rounded(table, modulus / WB_MPA);
+        wb_pages_cell_rounded(table, rate);
         if (rate > 0.0)
-            put_number(table, modulus / rate / WB_MPA);
+            wb_pages_cell_rounded(table, modulus / rate / WB_MPA);
         else
             wb_pages_cell(table, WB_TONE_QUIET, "never");
     }
@@ -850,16 +818,13 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
 static void put_apart(struct wb_document *document, const struct wb_recordings_cycle *cycle)
 {
     const struct wb_moment_comparison *const c = &cycle->comparison;
-    struct wb_text text = {0};
-    if (!cycle->has_comparison || !c->is_apart)
-        return;
-    wb_text_append(
-        &text,
-        "<b>Law and measured moments differ.</b> Between %.1f and %.1f /m the law's moment "
-        "is %.1f %% %s the moment from shapes and strand tension, %.1f standard deviations.",
-        c->first, c->last, 100.0 * fabs(c->difference), c->difference > 0.0 ? "above" : "below",
-        c->in_deviations);
-    wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
+    if (cycle->has_comparison && c->is_apart)
+        wb_pages_put(document, WB_BLOCK_NOTICE, WB_TONE_WARNING,
+                     "<b>Law and measured moments differ.</b> Between %.1f and %.1f /m the law's "
+                     "moment is %.1f %% %s the moment from shapes and strand tension, %.1f "
+                     "standard deviations.",
+                     c->first, c->last, 100.0 * fabs(c->difference),
+                     c->difference > 0.0 ? "above" : "below", c->in_deviations);
 }
 
 /* Findings of the checks of the data: doubts as warnings, notes as notes. */
@@ -873,7 +838,7 @@ static void put_remarks(struct wb_document *document, const struct wb_cycle_rema
         wb_text_append_escaped(&text, remark->text);
         wb_text_append(&text, ".");
         wb_pages_put_text(document, is_doubt ? WB_BLOCK_NOTICE : WB_BLOCK_PARAGRAPH,
-                          is_doubt ? WB_TONE_WARNING : WB_TONE_QUIET, &text);
+                          is_doubt ? WB_TONE_WARNING : WB_TONE_PLAIN, &text);
     }
 }
 

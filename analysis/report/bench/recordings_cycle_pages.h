@@ -16,6 +16,23 @@ void wb_recordings_cycle_pages_append(struct wb_text *text, const char *name,
 void wb_recordings_cycle_pages_append_ranges(struct wb_text *text,
                                              const struct wb_cycle_calibration *calibration);
 
+/* A row of a table that compares two validations: a number of each. */
+struct wb_recordings_cycle_pages_score {
+    const char *name, *unit; /* markup */
+    size_t offset;           /* of a double in struct wb_validate_result */
+    double in_unit;          /* the unit in SI */
+    int decimals;
+    bool needs_scatter, needs_unloading; /* unknown without two samples, without unloading */
+};
+/* Adds the n rows, where a validation (NULL: there is none) has no such number with a dash. */
+void wb_recordings_cycle_pages_put_scores(struct wb_document_table *table,
+                                          const struct wb_recordings_cycle_pages_score *rows,
+                                          size_t n,
+                                          const struct wb_validate_result *const results[2]);
+/* Adds one such row, of numbers in their unit. */
+void wb_recordings_cycle_pages_put_pair(struct wb_document_table *table, const char *name,
+                                        const char *unit, const double values[2], int decimals);
+
 /* EI, M(kappa), residual curvature ratio and the verdict on the hardening rule of every wire;
  * nothing where the campaign does not calibrate on whole cycles. */
 void wb_recordings_cycle_pages_summary(struct wb_document *document,

@@ -14,16 +14,17 @@
 
 static void add_origin(struct wb_found *found, const struct wb_recordings_results *results)
 {
-    if (!results->any_virtual)
-        return;
-    wb_found_say(
-        found, WB_FOUND_ORIGIN, "%s",
-        results->all_virtual
-            ? "<b>Virtual rig.</b> All recordings of this report come from the virtual rig, a "
-              "simulated bench with a simulated wire. No physical wire was tested. The wire in it "
-              "only resembles the published one, whose values are given for orientation."
-            : "<b>Virtual rig.</b> Some recordings of this report come from the virtual rig, a "
-              "simulated bench with a simulated wire; the list of recordings says which.");
+    if (results->all_virtual)
+        wb_found_say(found, WB_FOUND_ORIGIN,
+                     "<b>Virtual rig.</b> All recordings of this report come from the virtual rig, "
+                     "a simulated bench with a simulated wire. No physical wire was tested. The "
+                     "wire in it only resembles the published one, whose values are given for "
+                     "orientation.");
+    else if (results->any_virtual)
+        wb_found_say(found, WB_FOUND_ORIGIN,
+                     "<b>Virtual rig.</b> Some recordings of this report come from the virtual "
+                     "rig, a simulated bench with a simulated wire; the list of recordings says "
+                     "which.");
 }
 
 static void add_incomplete(struct wb_found *found, const struct wb_recordings_results *results)
@@ -168,9 +169,7 @@ static void add_wire(struct wb_found *found, const struct wb_recordings_results 
         by_cycle ? cycle != NULL
                  : wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION) != NULL;
     struct wb_text text = {0};
-    wb_text_append(&text, "<b>");
-    wb_text_append_escaped(&text, wire->wanted->label);
-    wb_text_append(&text, "</b>: ");
+    wb_text_append(&text, "<b>%s</b>: ", wire->wanted->markup);
     if (cycle && cycle->calibration.is_stopped)
         wb_text_append(&text, "undecided: stopped before all laws were fitted.");
     else if (!is_calibrated)
@@ -219,6 +218,12 @@ static void append_share(struct wb_text *text, const struct wb_validate_result *
                              "fewer than two samples.");
 }
 
+/* Continues a list of wires with another one. */
+static void append_to_list(struct wb_text *list, const struct wb_recordings_results_wire *wire)
+{
+    wb_text_append(list, "%s%s", list->length > 0 ? ", " : "", wire->wanted->markup);
+}
+
 /* The limits of the campaign, which bound the RMS of the paper's route. */
 static void add_limits(struct wb_found *found, const struct wb_recordings_results *results,
                        enum wb_recordings_purpose purpose)
@@ -232,16 +237,14 @@ static void add_limits(struct wb_found *found, const struct wb_recordings_result
         if (!wb_recordings_results_of(wire, purpose))
             continue;
         if (wb_recordings_results_keeps(results->campaign, wire, purpose)) {
-            wb_text_append(&kept, kept.length > 0 ? ", " : "");
-            wb_text_append_escaped(&kept, wire->wanted->label);
+            append_to_list(&kept, wire);
             wb_text_append(&kept, " (%.4f)", rms);
             continue;
         }
-        wb_text_append_escaped(&text, wire->wanted->label);
         wb_text_append(&text,
-                       ", %s by the paper's route: RMS %.4f of <i>F</i><sub>max</sub>, limit %.4g "
-                       "exceeded.",
-                       wb_recordings_purposes[purpose], rms, limit);
+                       "%s, %s by the paper's route: RMS %.4f of <i>F</i><sub>max</sub>, limit "
+                       "%.4g exceeded.",
+                       wire->wanted->markup, wb_recordings_purposes[purpose], rms, limit);
         if (purpose == WB_RECORDINGS_VALIDATION)
             append_share(&text, &wire->steps[purpose].result);
         wb_found_add(found, WB_FOUND_FAILED, &text);
@@ -266,8 +269,7 @@ static void add_bounds(struct wb_found *found, const struct wb_recordings_result
             continue;
         const bool is_beyond = wb_validate_bounds_exceeded(p);
         struct wb_text *const text = is_beyond ? &beyond : &within;
-        wb_text_append(text, text->length > 0 ? ", " : "");
-        wb_text_append_escaped(text, wire->wanted->label);
+        append_to_list(text, wire);
         if (is_beyond) {
             wb_text_append(text, " (");
             wb_validate_bounds_append(text, p);
@@ -301,8 +303,7 @@ static int count_doubts(const struct wb_cycle_remarks *remarks)
 static void add_checks(struct wb_found *found, const struct wb_recordings_results_wire *wire)
 {
     const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
-    char label[400];
-    wb_pages_escape(label, sizeof label, wire->wanted->label);
+    const char *const label = wire->wanted->markup;
     if (!cycle)
         return;
     const int n = count_doubts(&cycle->remarks);
@@ -354,13 +355,19 @@ static void add_unstated(struct wb_found *found, const struct wb_recordings_resu
     wb_text_release(&names);
 }
 
-/* Whether a remark on the paper's route holds for a wire. */
+/* Remarks on the calibration of a wire by the paper's route; returns how many. */
+static int remarks_of(const struct wb_recordings_results_wire *wire,
+                      const char *remarks[WB_CALIBRATE_MOST_REMARKS])
+{
+    return wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION)
+               ? wb_calibrate_remarks(&wire->calibration, remarks)
+               : 0;
+}
+
 static bool has_remark(const struct wb_recordings_results_wire *wire, const char *remark)
 {
     const char *remarks[WB_CALIBRATE_MOST_REMARKS];
-    const int n = wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION)
-                      ? wb_calibrate_remarks(&wire->calibration, remarks)
-                      : 0;
+    const int n = remarks_of(wire, remarks);
     for (int k = 0; k < n; k++) {
         if (strcmp(remarks[k], remark) == 0)
             return true;
@@ -378,10 +385,8 @@ static void add_remark(struct wb_found *found, const struct wb_recordings_result
             return;
     }
     for (int i = first; i < results->n_wires; i++) {
-        if (!has_remark(&results->wires[i], remark))
-            continue;
-        wb_text_append(&text, text.length > 0 ? ", " : "");
-        wb_text_append_escaped(&text, results->wires[i].wanted->label);
+        if (has_remark(&results->wires[i], remark))
+            append_to_list(&text, &results->wires[i]);
     }
     wb_text_append(&text, ": ");
     wb_pages_append_symbols(&text, remark);
@@ -392,11 +397,8 @@ static void add_remark(struct wb_found *found, const struct wb_recordings_result
 static void add_remarks(struct wb_found *found, const struct wb_recordings_results *results)
 {
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_results_wire *const wire = &results->wires[i];
         const char *remarks[WB_CALIBRATE_MOST_REMARKS];
-        const int n = wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION)
-                          ? wb_calibrate_remarks(&wire->calibration, remarks)
-                          : 0;
+        const int n = remarks_of(&results->wires[i], remarks);
         for (int k = 0; k < n; k++)
             add_remark(found, results, i, remarks[k]);
     }
@@ -419,29 +421,27 @@ static void add_trust(struct wb_found *found, const struct wb_recordings_results
         wb_found_say(found, WB_FOUND_UNCHECKED,
                      "Another length: the campaign has no validation, so the calibration is not "
                      "compared with data that it was not fitted to.");
-    if (campaign->whole_cycle)
+    if (campaign->whole_cycle) {
         add_unstated(found, results);
-    else
+    } else {
         add_remarks(found, results);
-    if (!campaign->whole_cycle)
         wb_found_say(found, WB_FOUND_UNCHECKED,
                      "The hardening rule: the paper's route is fitted to the loading alone, with "
                      "isotropic hardening.");
+    }
 }
 
 /* --- what to do next --- */
 
 /* Smallest and largest RMS of the unloading, by one method or the other. */
 struct span {
-    double low, high; /* 1 */
-    int n;
+    double low, high; /* 1; NaN: none */
 };
 
 static void add_to_span(struct span *span, double rms)
 {
-    span->low = span->n > 0 ? fmin(span->low, rms) : rms;
-    span->high = span->n > 0 ? fmax(span->high, rms) : rms;
-    span->n++;
+    span->low = fmin(span->low, rms);
+    span->high = fmax(span->high, rms);
 }
 
 static bool has_unloading(const struct wb_validate_result *p)
@@ -452,7 +452,7 @@ static bool has_unloading(const struct wb_validate_result *p)
 /* Which of both methods predicts the unloading better. */
 static void add_method(struct wb_found *found, const struct wb_recordings_results *results)
 {
-    struct span cycle = {0.0, 0.0, 0}, paper = {0.0, 0.0, 0};
+    struct span cycle = {(double)NAN, (double)NAN}, paper = cycle;
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
         const struct wb_validate_result *const by_cycle = wb_recordings_results_prediction(wire);
@@ -463,7 +463,7 @@ static void add_method(struct wb_found *found, const struct wb_recordings_result
         add_to_span(&cycle, by_cycle->cycles.rms);
         add_to_span(&paper, by_paper->cycles.rms);
     }
-    if (cycle.n > 0)
+    if (isfinite(cycle.low))
         wb_found_say(found, WB_FOUND_NEXT,
                      "<b>Method</b>: %s. The law of loading and unloading predicts the unloading "
                      "with an RMS error of %.1f to %.1f %% of <i>F</i><sub>max</sub>, the paper's "
@@ -492,9 +492,9 @@ static void add_specimens(struct wb_found *found, const struct wb_recordings_res
         wb_text_append(&text, text.length > 0 ? ", "
                                               : "<b>Test next</b>: for <i>EI</i> within \xc2\xb1"
                                                 "5 %%, ");
-        wb_text_append(&text, "%d specimens of ", of->calibration.specimens_for_5_percent);
-        wb_text_append_escaped(&text, results->wires[i].wanted->label);
-        wb_text_append(&text, " (%d tested)", of->calibration.n_members);
+        wb_text_append(&text, "%d specimens of %s (%d tested)",
+                       of->calibration.specimens_for_5_percent, results->wires[i].wanted->markup,
+                       of->calibration.n_members);
     }
     if (text.length > 0)
         wb_text_append(&text, ".");
@@ -536,21 +536,18 @@ static void put_decision(struct wb_document *document, const struct wb_recording
 {
     const bool is_kept = wb_recordings_results_keeps(campaign, wire, purpose);
     const double uncertainty = wb_recordings_results_uncertainty(wire, purpose);
-    struct wb_text text = {0};
-    wb_text_append_escaped(&text, wire->wanted->label);
-    wb_text_append(&text, ", %s: RMS %.4f of <i>F</i><sub>max</sub>, ",
-                   wb_recordings_purposes[purpose], wb_recordings_results_rms(wire, purpose));
+    char known[80] = "not known (one specimen)";
     if (isfinite(uncertainty))
-        wb_text_append(&text, "<i>U</i> = %.4f (95 %%, scatter between specimens)", uncertainty);
-    else
-        wb_text_append(&text, "<i>U</i> not known (one specimen)");
-    wb_text_append(&text, ", limit %.4g: <b>%s</b> by %s acceptance.", campaign->limit[purpose],
-                   is_kept ? "kept" : "exceeded", wb_verdict_rules[campaign->head.laboratory.rule]);
-    wb_pages_put_text(document, WB_BLOCK_ITEM,
-                      !is_kept  ? WB_TONE_WARNING
-                      : is_good ? WB_TONE_GOOD
-                                : WB_TONE_PLAIN,
-                      &text);
+        snprintf(known, sizeof known, "= %.4f (95 %%, scatter between specimens)", uncertainty);
+    wb_pages_put(document, WB_BLOCK_ITEM,
+                 !is_kept  ? WB_TONE_WARNING
+                 : is_good ? WB_TONE_GOOD
+                           : WB_TONE_PLAIN,
+                 "%s, %s: RMS %.4f of <i>F</i><sub>max</sub>, <i>U</i> %s, limit %.4g: <b>%s</b> "
+                 "by %s acceptance.",
+                 wire->wanted->markup, wb_recordings_purposes[purpose],
+                 wb_recordings_results_rms(wire, purpose), known, campaign->limit[purpose],
+                 is_kept ? "kept" : "exceeded", wb_verdict_rules[campaign->head.laboratory.rule]);
 }
 
 static void put_decisions(struct wb_document *document, const struct wb_recordings_results *results)

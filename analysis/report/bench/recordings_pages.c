@@ -2,7 +2,6 @@
 #include "analysis/report/bench/recordings_kind.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -99,8 +98,7 @@ static void put_property(struct wb_document_table *table,
     const double reference = wanted->has_reference
                                  ? wb_pages_value(&wanted->reference, i) / property->factor
                                  : (double)NAN;
-    wb_document_row(table, i == 0);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, i == 0 ? wanted->label : "");
+    wb_pages_row(table, i == 0, i == 0 ? wanted->label : "");
     wb_pages_cell(table, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
     wb_pages_cell(table, WB_TONE_QUIET, "%s", property->unit);
     wb_pages_cell_number(table, value, property->decimals);
@@ -125,7 +123,7 @@ static void put_properties(struct wb_document *document,
         {.heading = "Ratio", .right = true},
     };
     const struct wb_calibrate_settings *const settings = &results->campaign->head.fit;
-    char source[300] = "none", caption[900];
+    char source[300] = "none";
     for (int i = 0; i < results->n_wires; i++) {
         if (results->wires[i].wanted->has_reference) {
             wb_pages_escape(source, sizeof source, results->wires[i].wanted->reference_source);
@@ -136,18 +134,17 @@ static void put_properties(struct wb_document *document,
                         results->campaign->whole_cycle
                             ? "Calibrated properties, by the paper's route"
                             : "Calibrated properties");
-    snprintf(caption, sizeof caption,
-             "<i>E</i> from eq. 10 at a deflection of %g of the length, "
-             "<i>\xcf\x83</i><sub>Y</sub> from eq. 11 at %g of it. \xc2\xb1: standard "
-             "uncertainty from the scatter between samples (jackknife), of <i>K</i> a factor. "
-             "%s Published: %s. Ratio: calibrated over published.",
-             settings->elastic_zone,
-             settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone,
-             settings->bow_corrected
-                 ? "<i>E</i> and <i>\xcf\x83</i><sub>Y</sub> are corrected for the samples' bows."
-                 : "Not corrected for the samples' bows (bow_corrected: false).",
-             source);
-    struct wb_document_table *const table = wb_document_table(document, caption, 7, columns);
+    struct wb_document_table *const table = wb_pages_table(
+        document, WB_COUNT(columns), columns,
+        "<i>E</i> from eq. 10 at a deflection of %g of the length, <i>\xcf\x83</i><sub>Y</sub> "
+        "from eq. 11 at %g of it. \xc2\xb1: standard uncertainty from the scatter between samples "
+        "(jackknife), of <i>K</i> a factor. %s Published: %s. Ratio: calibrated over published.",
+        settings->elastic_zone,
+        settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone,
+        settings->bow_corrected
+            ? "<i>E</i> and <i>\xcf\x83</i><sub>Y</sub> are corrected for the samples' bows."
+            : "Not corrected for the samples' bows (bow_corrected: false).",
+        source);
     for (int i = 0; i < results->n_wires; i++) {
         for (int k = 0; k < 4; k++)
             put_property(table, &results->wires[i], k);
@@ -183,36 +180,34 @@ static void put_merits(struct wb_document *document, const struct wb_recordings_
         {.heading = "Shapes, RMS (mm)", .right = true, .wraps = true},
         {.heading = "<i>F</i><sub>max</sub> (mN)", .right = true, .wraps = true},
     };
-    char caption[900], source[300];
-    int length = snprintf(caption, sizeof caption,
-                          "Errors are fractions of <i>F</i><sub>max</sub>, the largest force of "
-                          "the mean measured curve (eqs. 18 and 19); the table has that of the "
-                          "validation. "
-                          "Scatter explains, about: the part of the validation's RMS<sup>2</sup> "
-                          "that a perfect model would show too, on average, because means of a few "
-                          "specimens of unlike stiffness differ by chance.");
+    struct wb_text caption = {0};
+    char source[300];
+    wb_text_append(&caption,
+                   "Errors are fractions of <i>F</i><sub>max</sub>, the largest force of the mean "
+                   "measured curve (eqs. 18 and 19); the table has that of the validation. Scatter "
+                   "explains, about: the part of the validation's RMS<sup>2</sup> that a perfect "
+                   "model would show too, on average, because means of a few specimens of unlike "
+                   "stiffness differ by chance.");
     for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
         if (campaign->limit[k] > 0.0)
-            length +=
-                snprintf(caption + length, sizeof caption - (size_t)length,
-                         " Limit of the %s: %.4g.", wb_recordings_purposes[k], campaign->limit[k]);
+            wb_text_append(&caption, " Limit of the %s: %.4g.", wb_recordings_purposes[k],
+                           campaign->limit[k]);
     }
     if (campaign->reference_rms[1] > 0.0)
-        snprintf(caption + length, sizeof caption - (size_t)length,
-                 " Published RMS of validations: %.4g to %.4g (%s).", campaign->reference_rms[0],
-                 campaign->reference_rms[1],
-                 wb_pages_escape(source, sizeof source, campaign->reference_source));
+        wb_text_append(&caption, " Published RMS of validations: %.4g to %.4g (%s).",
+                       campaign->reference_rms[0], campaign->reference_rms[1],
+                       wb_pages_escape(source, sizeof source, campaign->reference_source));
     wb_document_heading(document, 2, "merits",
                         campaign->whole_cycle ? "How well the model of the paper's route fits"
                                               : "How well the model fits");
-    struct wb_document_table *const table = wb_document_table(document, caption, 8, columns);
+    struct wb_document_table *const table =
+        wb_pages_start_table(document, &caption, WB_COUNT(columns), columns);
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
         const struct wb_validate_result *const v =
             wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
         const double none = (double)NAN, share = wb_recordings_results_validation_share(wire);
-        wb_document_row(table, false);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, wire->wanted->label);
+        wb_pages_row(table, false, wire->wanted->label);
         put_rms(table, results, wire, WB_RECORDINGS_CALIBRATION);
         put_rms(table, results, wire, WB_RECORDINGS_VALIDATION);
         wb_pages_cell_number(table, v ? v->elastoplastic.max_error : none, 4);
@@ -241,7 +236,6 @@ usable_at(const struct wb_recordings_results *results, int index)
 static int put_gaps(struct wb_document *document, const struct wb_recordings_results *results)
 {
     const struct wb_recordings_results_test *test;
-    char item[300];
     double longest = 0.0;
     int n = 0;
     for (int i = 0; (test = usable_at(results, i)); i++) {
@@ -254,14 +248,12 @@ static int put_gaps(struct wb_document *document, const struct wb_recordings_res
         if (wb_json_get_number(rows, "longest_gap_s", &one))
             longest = fmax(longest, one);
     }
-    if (n == 0)
-        return 0;
-    snprintf(item, sizeof item,
-             "%d of %d recordings %s gaps in the rows, the longest of %.2f s; the pages of the "
-             "wires name them.",
-             n, results->outcome.n_usable, wb_pages_plural(n, "has", "have"), longest);
-    wb_document_item(document, WB_TONE_PLAIN, item);
-    return 1;
+    if (n > 0)
+        wb_pages_put(document, WB_BLOCK_ITEM, WB_TONE_PLAIN,
+                     "%d of %d recordings %s gaps in the rows, the longest of %.2f s; the pages of "
+                     "the wires name them.",
+                     n, results->outcome.n_usable, wb_pages_plural(n, "has", "have"), longest);
+    return n;
 }
 
 /* Warnings of alignments: of one wire all, or (`of` NULL) of all wires the first few but those of
@@ -292,32 +284,24 @@ static int put_search_warnings(struct wb_document *document,
                                const struct wb_recordings_results_wire *wire)
 {
     const struct wb_calibrate_result *const c = &wire->calibration;
-    char label[300], item[700];
-    int n = 0;
+    const char *const label = wire->wanted->markup;
+    const int n = document->n;
     if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))
         return 0;
-    wb_pages_escape(label, sizeof label, wire->wanted->label);
-    if (!wb_calibrate_is_complete(c->end)) {
-        snprintf(item, sizeof item, "%s: the search for K and n ended because %s.", label,
-                 wb_calibrate_end_text(c->end));
-        wb_document_item(document, WB_TONE_WARNING, item);
-        n++;
-    }
-    if (c->restarted && !(c->restart_moved <= 1e-3)) {
-        snprintf(item, sizeof item,
-                 "%s: a restart of the search moved K and n by up to %.2g %%: other pairs fit "
-                 "equally well.",
-                 label, 100.0 * c->restart_moved);
-        wb_document_item(document, WB_TONE_PLAIN, item);
-        n++;
-    }
-    if (c->failed_evaluations > 0) {
-        snprintf(item, sizeof item, "%s: %d of %d runs of the beam did not converge.", label,
-                 c->failed_evaluations, c->evaluations);
-        wb_document_item(document, WB_TONE_PLAIN, item);
-        n++;
-    }
-    return n;
+    if (!wb_calibrate_is_complete(c->end))
+        wb_pages_put(document, WB_BLOCK_ITEM, WB_TONE_WARNING,
+                     "%s: the search for K and n ended because %s.", label,
+                     wb_calibrate_end_text(c->end));
+    if (c->restarted && !(c->restart_moved <= 1e-3))
+        wb_pages_put(document, WB_BLOCK_ITEM, WB_TONE_PLAIN,
+                     "%s: a restart of the search moved K and n by up to %.2g %%: other pairs fit "
+                     "equally well.",
+                     label, 100.0 * c->restart_moved);
+    if (c->failed_evaluations > 0)
+        wb_pages_put(document, WB_BLOCK_ITEM, WB_TONE_PLAIN,
+                     "%s: %d of %d runs of the beam did not converge.", label,
+                     c->failed_evaluations, c->evaluations);
+    return document->n - n;
 }
 
 static void put_warnings(struct wb_document *document, const struct wb_recordings_results *results)
@@ -330,24 +314,21 @@ static void put_warnings(struct wb_document *document, const struct wb_recording
     const int shown = put_alignment_warnings(document, results, NULL);
     if (shown + of_searches + of_gaps == 0)
         wb_document_item(document, WB_TONE_QUIET, "None.");
-    if (shown > MOST_WARNINGS) {
-        char text[120];
-        snprintf(text, sizeof text, "%d more on the pages of the wires.", shown - MOST_WARNINGS);
-        wb_document_item(document, WB_TONE_PLAIN, text);
-    }
+    if (shown > MOST_WARNINGS)
+        wb_pages_put(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, "%d more on the pages of the wires.",
+                     shown - MOST_WARNINGS);
 }
 
 static void put_excluded(struct wb_document *document, const struct wb_recordings_results *results)
 {
-    char text[160];
     const int n = count_exclusions(results);
     if (n == 0)
         return;
-    snprintf(text, sizeof text, "%d further %s excluded and %s used in no number of this report.",
-             n, wb_pages_plural(n, "recording was", "recordings were"),
-             wb_pages_plural(n, "is", "are"));
     wb_document_heading(document, 2, "excluded", "Excluded");
-    wb_document_paragraph(document, text);
+    wb_pages_put(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN,
+                 "%d further %s excluded and %s used in no number of this report.", n,
+                 wb_pages_plural(n, "recording was", "recordings were"),
+                 wb_pages_plural(n, "is", "are"));
     put_exclusions(document, results, NULL);
 }
 
@@ -379,8 +360,7 @@ static void put_wires(struct wb_document *document, const struct wb_recordings_r
     struct wb_document_table *const table = wb_document_table(document, NULL, 6, columns);
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_wire *const wire = &results->wires[i].wanted->product;
-        wb_document_row(table, false);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, results->wires[i].wanted->label);
+        wb_pages_row(table, false, results->wires[i].wanted->label);
         wb_pages_cell_number(table, wire->conductor_diameter / WB_MM, 2);
         wb_pages_cell_number(table, wire->outer_diameter / WB_MM, 2);
         wb_pages_cell_number(table, wire->density / WB_G_PER_CM3, 2);
@@ -413,8 +393,7 @@ static void put_specimen(struct wb_document_table *table,
     const double force = largest_force(dataset, &cycles);
     wb_json_get_number(wb_json_get(wb_json_get(dataset->document, "checks"), "markers"),
                        "seen_percent", &seen);
-    wb_document_row(table, label[0] != '\0');
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, label);
+    wb_pages_row(table, label[0] != '\0', label);
     wb_pages_cell_number(table, dataset->info.length / WB_MM, 0);
     wb_pages_cell(table, WB_TONE_PLAIN, "%d", dataset->info.sample);
     wb_pages_cell(table, WB_TONE_PLAIN, "%d", cycles);
@@ -468,27 +447,12 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
 
 /* --- the bench --- */
 
-static void put_pair(struct wb_document_table *table, const char *name, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static void put_pair(struct wb_document_table *table, const char *name, const char *format, ...)
-{
-    char plain[300];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(plain, sizeof plain, format, arguments);
-    va_end(arguments);
-    wb_document_row(table, false);
-    wb_pages_cell(table, WB_TONE_QUIET, "%s", name);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, plain);
-}
-
 /* As their makers write it. */
 static const char *protocol_name(const char *protocol)
 {
     static const char *const names[][2] = {
         {"natnet", "NatNet"}, {"grbl", "GRBL"}, {"tic", "Tic"}, {"mt-sics", "MT-SICS"}};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    for (size_t i = 0; i < WB_COUNT(names); i++) {
         if (strcmp(protocol, names[i][0]) == 0)
             return names[i][1];
     }
@@ -517,30 +481,33 @@ static void put_rig(struct wb_document *document, const struct wb_recordings_res
         document,
         same ? NULL : "Not all recordings were made on the same bench; this is the first one's.", 2,
         columns);
-    put_pair(table, "Name", "%s%s", rig->name,
-             test->is_virtual && !strstr(rig->name, "virtual") ? " (virtual rig)" : "");
-    put_pair(table, "Load cell",
-             "%.4g g, reads on to %.4g %%, serial number %s, "
-             "calibrated %s",
-             wb_recordings_results_capacity(rig) / WB_G,
-             cell->capacity > 0.0 ? 100.0 * cell->overload / cell->capacity : 0.0,
-             cell->serial_number[0] ? cell->serial_number : "not given",
-             cell->calibration_date[0] ? cell->calibration_date : "not given");
-    put_pair(table, "Filter of the cell", "delay %.3g ms, uncertain by %.3g ms",
-             1e3 * cell->filter_delay, 1e3 * cell->filter_delay_uncertainty);
-    put_pair(table, "Motion capture",
-             "%s, %.4g frames a second expected, %d markers on "
-             "the wire, %.3g mm off its axis",
-             protocol_name(rig->mocap.protocol), rig->mocap.frame_rate, test->specimen.n_markers,
-             test->specimen.marker_offset / WB_MM);
-    put_pair(table, "Stage", "%s, %.3g mm/s, %.4g mm of travel", protocol_name(rig->stage.protocol),
-             rig->stage.speed / WB_MM, rig->stage.travel / WB_MM);
+    wb_pages_row_pair(table, WB_TONE_QUIET, "Name", "%s%s", rig->name,
+                      test->is_virtual && !strstr(rig->name, "virtual") ? " (virtual rig)" : "");
+    wb_pages_row_pair(table, WB_TONE_QUIET, "Load cell",
+                      "%.4g g, reads on to %.4g %%, serial number %s, "
+                      "calibrated %s",
+                      wb_recordings_results_capacity(rig) / WB_G,
+                      cell->capacity > 0.0 ? 100.0 * cell->overload / cell->capacity : 0.0,
+                      cell->serial_number[0] ? cell->serial_number : "not given",
+                      cell->calibration_date[0] ? cell->calibration_date : "not given");
+    wb_pages_row_pair(table, WB_TONE_QUIET, "Filter of the cell",
+                      "delay %.3g ms, uncertain by %.3g ms", 1e3 * cell->filter_delay,
+                      1e3 * cell->filter_delay_uncertainty);
+    wb_pages_row_pair(table, WB_TONE_QUIET, "Motion capture",
+                      "%s, %.4g frames a second expected, %d markers on "
+                      "the wire, %.3g mm off its axis",
+                      protocol_name(rig->mocap.protocol), rig->mocap.frame_rate,
+                      test->specimen.n_markers, test->specimen.marker_offset / WB_MM);
+    wb_pages_row_pair(table, WB_TONE_QUIET, "Stage", "%s, %.3g mm/s, %.4g mm of travel",
+                      protocol_name(rig->stage.protocol), rig->stage.speed / WB_MM,
+                      rig->stage.travel / WB_MM);
     if (rig->strand.length > 0.0)
-        put_pair(table, "Strand", "%.4g mm, counterweight %.3g g at the tip",
-                 rig->strand.length / WB_MM, rig->strand.counterweight / WB_G);
+        wb_pages_row_pair(table, WB_TONE_QUIET, "Strand",
+                          "%.4g mm, counterweight %.3g g at the tip", rig->strand.length / WB_MM,
+                          rig->strand.counterweight / WB_G);
     else
-        put_pair(table, "Strand", "none, the force is vertical");
-    put_pair(table, "Gravity", "%.6g m/s\xc2\xb2", rig->gravity);
+        wb_pages_row_pair(table, WB_TONE_QUIET, "Strand", "none, the force is vertical");
+    wb_pages_row_pair(table, WB_TONE_QUIET, "Gravity", "%.6g m/s\xc2\xb2", rig->gravity);
 }
 
 /* --- corrections --- */
@@ -550,7 +517,7 @@ static bool correction_value(const struct wb_json *entry, const char *what, doub
 {
     static const char *const units[] = {"mN",  "mm",  "ms",  "s",      "us",
                                         "deg", "rad", "ppm", "percent"};
-    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+    for (size_t i = 0; i < WB_COUNT(units); i++) {
         char key[64];
         snprintf(key, sizeof key, "%s_%s", what, units[i]);
         if (wb_json_get_number(entry, key, value)) {
@@ -591,8 +558,7 @@ static void put_correction(struct wb_document_table *table,
         if (entry && correction_value(entry, "uncertainty", &value, &unit))
             largest = largest >= value ? largest : value;
     }
-    wb_document_row(table, false);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, name);
+    wb_pages_row(table, false, name);
     wb_pages_cell_plain(table, WB_TONE_QUIET, unit);
     wb_pages_cell_number(table, low, 3);
     wb_pages_cell_number(table, high, 3);
@@ -685,20 +651,8 @@ static void put_calibration_text(struct wb_document *document,
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 
-struct merit {
-    const char *name, *unit;
-    double calibration, validation; /* in the unit; NaN unknown */
-    int decimals;
-};
-
-static void put_merit(struct wb_document_table *table, const struct merit *merit)
-{
-    wb_document_row(table, false);
-    wb_pages_cell(table, WB_TONE_PLAIN, "%s", merit->name);
-    wb_pages_cell(table, WB_TONE_QUIET, "%s", merit->unit);
-    wb_pages_cell_number(table, merit->calibration, merit->decimals);
-    wb_pages_cell_number(table, merit->validation, merit->decimals);
-}
+#define PART "of <i>F</i><sub>max</sub>"
+#define OF(member) offsetof(struct wb_validate_result, member)
 
 static void put_numbers(struct wb_document *document, const struct wb_recordings_results_wire *wire)
 {
@@ -708,40 +662,31 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
         {.heading = "Calibration", .right = true},
         {.heading = "Validation", .right = true},
     };
-    const double none = (double)NAN;
-    const struct wb_calibrate_result *const c = &wire->calibration;
-    const struct wb_validate_result *const fit = &wire->steps[WB_RECORDINGS_CALIBRATION].result;
+    static const struct wb_recordings_cycle_pages_score scores[] = {
+        {"RMS (eq. 19), each sample with its own bow", PART, OF(elastoplastic.rms), 1.0, 4},
+        {"RMS beyond 5 mm", PART, OF(elastoplastic.rms_from_5mm), 1.0, 4},
+        {"Largest error (eq. 18)", PART, OF(elastoplastic.max_error), 1.0, 4},
+        {"RMS of the linear elastic beam", PART, OF(elastic.rms), 1.0, 4},
+        {"Scatter between samples <i>s</i>", PART, OF(scatter_rms), 1.0, 4, .needs_scatter = true},
+        {"Scatter beyond the natural shapes <i>r</i>", PART, OF(residual_scatter_rms), 1.0, 4,
+         .needs_scatter = true},
+        {"RMS of a perfect model, about", PART, OF(expected_rms), 1.0, 4},
+        {"RMS of a perfect model, exceeded by one of twenty", PART, OF(expected_rms_95), 1.0, 4},
+        {"Share that the scatter explains, about", "1", OF(scatter_share), 1.0, 2},
+        {"Shapes, RMS distance", "mm", OF(shape_rms), WB_MM, 2},
+        {"Shapes, largest distance", "mm", OF(shape_max), WB_MM, 2},
+        {"<i>F</i><sub>max</sub>", "mN", OF(curve.max_force), WB_MN, 1},
+        {"Largest deflection of all samples", "mm", OF(curve.max_deflection), WB_MM, 1},
+    };
     const struct wb_validate_result *const v =
         wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
-    const bool scatters = fit->curve.n_samples > 1, v_scatters = v && v->curve.n_samples > 1;
-    const char *const part = "of <i>F</i><sub>max</sub>";
-    const struct merit merits[] = {
-        {"RMS (eq. 19), each sample with its own bow", part, fit->elastoplastic.rms,
-         v ? v->elastoplastic.rms : none, 4},
-        {"RMS beyond 5 mm", part, fit->elastoplastic.rms_from_5mm,
-         v ? v->elastoplastic.rms_from_5mm : none, 4},
-        {"Largest error (eq. 18)", part, fit->elastoplastic.max_error,
-         v ? v->elastoplastic.max_error : none, 4},
-        {"RMS of the linear elastic beam", part, fit->elastic.rms, v ? v->elastic.rms : none, 4},
-        {"Scatter between samples <i>s</i>", part, scatters ? c->scatter_rms : none,
-         v_scatters ? v->scatter_rms : none, 4},
-        {"Scatter beyond the natural shapes <i>r</i>", part,
-         scatters ? c->residual_scatter_rms : none, v_scatters ? v->residual_scatter_rms : none, 4},
-        {"RMS of a perfect model, about", part, none, v ? v->expected_rms : none, 4},
-        {"RMS of a perfect model, exceeded by one of twenty", part, none,
-         v ? v->expected_rms_95 : none, 4},
-        {"Share that the scatter explains, about", "1", none,
-         wb_recordings_results_validation_share(wire), 2},
-        {"Shapes, RMS distance", "mm", fit->shape_rms / WB_MM, v ? v->shape_rms / WB_MM : none, 2},
-        {"Shapes, largest distance", "mm", fit->shape_max / WB_MM, v ? v->shape_max / WB_MM : none,
-         2},
-        {"<i>F</i><sub>max</sub>", "mN", fit->curve.max_force / WB_MN,
-         v ? v->curve.max_force / WB_MN : none, 1},
-        {"Largest deflection of all samples", "mm", fit->curve.max_deflection / WB_MM,
-         v ? v->curve.max_deflection / WB_MM : none, 1},
-        {"Mean bow of the samples", "mm", wb_dataset_bow(&fit->info) / WB_MM,
-         v ? wb_dataset_bow(&v->info) / WB_MM : none, 2},
-    };
+    /* Scatter as the calibration has it; a perfect model is known for the validation alone. */
+    struct wb_validate_result fit = wire->steps[WB_RECORDINGS_CALIBRATION].result;
+    fit.scatter_rms = wire->calibration.scatter_rms;
+    fit.residual_scatter_rms = wire->calibration.residual_scatter_rms;
+    fit.expected_rms = fit.expected_rms_95 = fit.scatter_share = (double)NAN;
+    const double bows[2] = {wb_dataset_bow(&fit.info) / WB_MM,
+                            v ? wb_dataset_bow(&v->info) / WB_MM : (double)NAN};
     wb_document_heading(document, 2, "", "Numbers");
     struct wb_document_table *const table = wb_document_table(
         document,
@@ -754,26 +699,23 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
         "logarithm, pooled); <i>G</i> is what stiffness changes in the curve. Student's <i>t</i> "
         "times as much is exceeded in one of twenty validations. Share: its square over "
         "RMS<sup>2</sup>, at most 1; near 0 the error is the model's.",
-        4, columns);
-    for (size_t i = 0; i < sizeof merits / sizeof merits[0]; i++)
-        put_merit(table, &merits[i]);
-}
-
-static void put_note(struct wb_document *document, const char *remark)
-{
-    struct wb_text text = {0};
-    wb_text_append(&text, "Note: ");
-    wb_pages_append_symbols(&text, remark);
-    wb_text_append(&text, ".");
-    wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
+        WB_COUNT(columns), columns);
+    wb_recordings_cycle_pages_put_scores(table, scores, WB_COUNT(scores),
+                                         (const struct wb_validate_result *[2]){&fit, v});
+    wb_recordings_cycle_pages_put_pair(table, "Mean bow of the samples", "mm", bows, 2);
 }
 
 static void put_remarks(struct wb_document *document, const struct wb_calibrate_result *result)
 {
     const char *remarks[WB_CALIBRATE_MOST_REMARKS];
     const int n = wb_calibrate_remarks(result, remarks);
-    for (int i = 0; i < n; i++)
-        put_note(document, remarks[i]);
+    for (int i = 0; i < n; i++) {
+        struct wb_text text = {0};
+        wb_text_append(&text, "Note: ");
+        wb_pages_append_symbols(&text, remarks[i]);
+        wb_text_append(&text, ".");
+        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
+    }
 }
 
 static void put_search(struct wb_document *document, const struct wb_recordings_results *results,
@@ -858,8 +800,7 @@ static void put_wire(struct wb_document *document, const struct wb_recordings_re
 static void put_test(struct wb_document_table *table, const struct wb_recordings_results_test *test,
                      bool begins_group)
 {
-    wb_document_row(table, begins_group);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, test->wanted->name);
+    wb_pages_row(table, begins_group, test->wanted->name);
     if (!test->usable) {
         wb_pages_cell(table, WB_TONE_WARNING, "%s",
                       test->wanted->excluded.is_excluded ? "excluded" : "not used");
@@ -922,44 +863,36 @@ static void put_recordings(struct wb_document *document,
     }
 }
 
-static void put_setting(struct wb_document_table *table, const char *name, const char *value,
-                        const char *meaning)
-{
-    wb_document_row(table, false);
-    wb_pages_cell(table, WB_TONE_PLAIN, "%s", name);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, value);
-    wb_pages_cell(table, WB_TONE_QUIET, "%s", meaning);
-}
-
 static void put_settings(struct wb_document *document, const struct wb_recordings_results *results)
 {
     static const struct wb_document_column columns[] = {
         {"Setting"}, {"Value"}, {.heading = "Meaning", .wraps = true}};
-    const struct wb_recordings *const campaign = results->campaign;
-    const struct wb_calibrate_settings *const s = &campaign->head.fit;
-    char value[80];
+    const struct wb_calibrate_settings *const s = &results->campaign->head.fit;
     wb_document_heading(document, 2, "settings", "Settings");
-    struct wb_document_table *const table = wb_document_table(document, NULL, 3, columns);
-    snprintf(value, sizeof value, "%g", s->elastic_zone);
-    put_setting(table, "Elastic zone", value,
-                "deflection over length at which eq. 10 gives <i>E</i>");
-    snprintf(value, sizeof value, "%g", s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
-    put_setting(table, "Yield point", value,
-                "deflection over length at which eq. 11 gives <i>\xcf\x83</i><sub>Y</sub>");
-    snprintf(value, sizeof value, "%g mm", s->step / WB_MM);
-    put_setting(table, "Step", value, "between the deflections that are compared");
-    put_setting(table, "Initial shape", s->straight ? "straight" : "mean of the samples",
-                "natural shape of the computed wire");
-    put_setting(table, "Restart", s->restart ? "once" : "no", "of the search, from its optimum");
-    snprintf(value, sizeof value, "%d", s->n_elements);
-    put_setting(table, "Elements", value, "quadratic beam elements along the wire");
-    snprintf(value, sizeof value, "%d", s->n_fibres);
-    put_setting(table, "Fibres", value, "integration points over the diameter");
-    snprintf(value, sizeof value, "%g of the size, %g of the error", s->size_tolerance,
-             s->error_tolerance);
-    put_setting(table, "Stops at", value,
-                "size in units of <i>K</i><sub>0</sub> and <i>n</i><sub>0</sub>; error over "
-                "<i>F</i><sub>max</sub>");
+    struct wb_document_table *const table =
+        wb_document_table(document, NULL, WB_COUNT(columns), columns);
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Elastic zone", "%g", s->elastic_zone);
+    wb_document_cell(table, WB_TONE_QUIET, "deflection over length at which eq. 10 gives <i>E</i>");
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Yield point", "%g",
+                      s->yield_point > 0.0 ? s->yield_point : s->elastic_zone);
+    wb_document_cell(table, WB_TONE_QUIET,
+                     "deflection over length at which eq. 11 gives <i>\xcf\x83</i><sub>Y</sub>");
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Step", "%g mm", s->step / WB_MM);
+    wb_document_cell(table, WB_TONE_QUIET, "between the deflections that are compared");
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Initial shape",
+                      s->straight ? "straight" : "mean of the samples");
+    wb_document_cell(table, WB_TONE_QUIET, "natural shape of the computed wire");
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Restart", s->restart ? "once" : "no");
+    wb_document_cell(table, WB_TONE_QUIET, "of the search, from its optimum");
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Elements", "%d", s->n_elements);
+    wb_document_cell(table, WB_TONE_QUIET, "quadratic beam elements along the wire");
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Fibres", "%d", s->n_fibres);
+    wb_document_cell(table, WB_TONE_QUIET, "integration points over the diameter");
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Stops at", "%g of the size, %g of the error",
+                      s->size_tolerance, s->error_tolerance);
+    wb_document_cell(table, WB_TONE_QUIET,
+                     "size in units of <i>K</i><sub>0</sub> and <i>n</i><sub>0</sub>; error over "
+                     "<i>F</i><sub>max</sub>");
 }
 
 static void put_provenance(struct wb_document *document,
