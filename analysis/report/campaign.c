@@ -4,9 +4,6 @@
 #include <string.h>
 
 #include "base/interrupt.h"
-#include "base/units.h"
-
-#define WB_LOG_DOMAIN "campaign"
 
 enum {
     MOST_SETTINGS = 32 /* rows of wb_calibrate_table */

@@ -1,7 +1,6 @@
 #include "analysis/report/cards.h"
 
 #include <ctype.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,5 @@
 #include "analysis/report/figures.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

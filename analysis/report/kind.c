@@ -5,8 +5,6 @@
 #include "analysis/report/files.h"
 #include "analysis/report/glossary.h"
 
-#define WB_LOG_DOMAIN "report"
-
 enum wb_status wb_kind_read(const struct wb_kind *kind, void *campaign, const char *path)
 {
     struct wb_campaign *const head = campaign;

@@ -1,12 +1,10 @@
 #include "analysis/report/laboratory.h"
 
-#include <stdio.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "analysis/report/pages.h"
 #include "base/text.h"
-
-#define WB_LOG_DOMAIN "campaign"
 
 static const char standard[] = "ISO/IEC 17025:2017";
 

@@ -31,7 +31,6 @@
 #define WB_ANALYSIS_REPORT_LABORATORY_H
 
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "analysis/report/document.h"
 #include "analysis/report/verdict.h"

@@ -3,8 +3,6 @@
 #include <ctype.h>
 #include <stdio.h>
 
-#define WB_LOG_DOMAIN "report"
-
 const char *wb_recordings_draw_measured(const struct wb_recordings_results *results)
 {
     return results->any_virtual ? "measured (virtual rig)" : "measured";

@@ -6,8 +6,6 @@
 #include "analysis/report/bench/recordings_figures.h"
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "report"
-
 static void print_step(FILE *out, const struct wb_recordings_results *results, int index,
                        enum wb_recordings_purpose purpose)
 {

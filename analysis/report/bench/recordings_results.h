@@ -13,7 +13,6 @@
 #include "analysis/report/bench/recordings_cycle.h"
 #include "analysis/report/kind.h"
 #include "analysis/validation/validate.h"
-#include "base/status.h"
 #include "base/text.h"
 #include "daq/protocol/rig.h"
 #include "daq/protocol/specimen.h"
