@@ -1,4 +1,4 @@
-#include "analysis/report/bench/recordings_cycle_figures.h"
+#include "analysis/report/bench/recordings_figures.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,7 +23,7 @@ static const char deflection_axis[] = "Deflection <i>\xce\xb4</i> (mm)";
 /* What an item is of; NULL: there is no such calibration. */
 static const struct wb_recordings_cycle *cycle_of(const struct wb_figures_item *item)
 {
-    return wb_recordings_results_cycle(wb_recordings_draw_wire(item->results, item->index));
+    return wb_recordings_results_cycle(wb_recordings_draw_wire(item));
 }
 
 static const char *measured_of(const struct wb_figures_item *item)
@@ -214,8 +214,7 @@ enum wb_status wb_recordings_cycle_figures_later(struct wb_figures_item *item)
 
 enum wb_status wb_recordings_cycle_figures_prediction(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results_wire *const wire =
-        wb_recordings_draw_wire(item->results, item->index);
+    const struct wb_recordings_results_wire *const wire = wb_recordings_draw_wire(item);
     const struct wb_validate_result *const result = wb_recordings_results_prediction(wire);
     if (!result)
         return WB_OK;
@@ -482,10 +481,9 @@ enum wb_status wb_recordings_cycle_figures_all_moments(struct wb_figures_item *i
 {
     const struct wb_recordings_results *const results = item->results;
     struct wb_panel *panel = NULL;
-    char label[300];
     bool any_refuted = false;
     for (int i = 0; i < results->n_wires; i++) {
-        const struct wb_recordings_results_wire *const wire = wb_recordings_draw_wire(results, i);
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
         const struct wb_recordings_cycle *const cycle = wb_recordings_results_cycle(wire);
         if (!cycle)
             continue;
@@ -497,8 +495,7 @@ enum wb_status wb_recordings_cycle_figures_all_moments(struct wb_figures_item *i
                            "residual curvature after unloading from the end of the curve.");
             panel = add_moment_panel(item->figure);
         }
-        wb_pages_escape(label, sizeof label, wire->wanted->label);
-        add_law(panel, label, NULL, cycle, wb_palette_wire(i));
+        add_law(panel, wire->wanted->markup, NULL, cycle, wb_palette_wire(i));
         add_rest(panel, NULL, cycle, wb_palette_wire(i));
         any_refuted |= wb_recordings_cycle_is_refuted(cycle);
     }
@@ -575,8 +572,7 @@ static bool is_near(double value, double low, double high)
 /* K over n: the region, the fit, and where the paper's route ended. */
 static enum wb_status add_pairs(struct wb_panel *panel, struct wb_figures_item *item)
 {
-    const struct wb_recordings_results_wire *const wire =
-        wb_recordings_draw_wire(item->results, item->index);
+    const struct wb_recordings_results_wire *const wire = wb_recordings_draw_wire(item);
     const struct wb_cycle_valley *const valley = &wire->cycle.valley;
     wb_figure_set_axes(panel, "Hardening exponent <i>n</i>", "Strength coefficient <i>K</i> (MPa)");
     WB_TRY(add_region(panel, valley, false, "indistinguishable"));

@@ -1,4 +1,4 @@
-#include "analysis/report/bench/recordings_cycle_pages.h"
+#include "analysis/report/bench/recordings_pages.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -292,8 +292,8 @@ static void put_predictions(struct wb_document *document,
         put_prediction_of(table, &results->wires[i]);
 }
 
-void wb_recordings_cycle_pages_put_pair(struct wb_document_table *table, const char *name,
-                                        const char *unit, const double values[2], int decimals)
+void wb_recordings_cycle_put_score(struct wb_document_table *table, const char *name,
+                                   const char *unit, const double values[2], int decimals)
 {
     wb_document_row(table, false);
     wb_document_cell(table, WB_TONE_PLAIN, name);
@@ -302,13 +302,12 @@ void wb_recordings_cycle_pages_put_pair(struct wb_document_table *table, const c
         wb_pages_cell_number(table, values[i], decimals);
 }
 
-void wb_recordings_cycle_pages_put_scores(struct wb_document_table *table,
-                                          const struct wb_recordings_cycle_pages_score *rows,
-                                          size_t n,
-                                          const struct wb_validate_result *const results[2])
+void wb_recordings_cycle_put_scores(struct wb_document_table *table,
+                                    const struct wb_recordings_score *rows, size_t n,
+                                    const struct wb_validate_result *const results[2])
 {
     for (size_t k = 0; k < n; k++) {
-        const struct wb_recordings_cycle_pages_score *const row = &rows[k];
+        const struct wb_recordings_score *const row = &rows[k];
         double values[2] = {(double)NAN, (double)NAN};
         for (int i = 0; i < 2; i++) {
             const struct wb_validate_result *const of = results[i];
@@ -317,7 +316,7 @@ void wb_recordings_cycle_pages_put_scores(struct wb_document_table *table,
                 memcpy(&values[i], (const char *)of + row->offset, sizeof values[i]);
             values[i] /= row->in_unit;
         }
-        wb_recordings_cycle_pages_put_pair(table, row->name, row->unit, values, row->decimals);
+        wb_recordings_cycle_put_score(table, row->name, row->unit, values, row->decimals);
     }
 }
 
@@ -332,9 +331,9 @@ static void put_loop(struct wb_document_table *table, const struct wb_validate_c
                                 paper ? loop->measured / WB_MJ : (double)NAN};
     const double predicted[2] = {loop->computed / WB_MJ, other / WB_MJ};
     snprintf(name, sizeof name, "Energy lost in cycle %d, measured", loop->cycle);
-    wb_recordings_cycle_pages_put_pair(table, name, "mJ", measured, 3);
+    wb_recordings_cycle_put_score(table, name, "mJ", measured, 3);
     snprintf(name, sizeof name, "Energy lost in cycle %d, predicted", loop->cycle);
-    wb_recordings_cycle_pages_put_pair(table, name, "mJ", predicted, 3);
+    wb_recordings_cycle_put_score(table, name, "mJ", predicted, 3);
 }
 
 static void put_bounds(struct wb_document *document, const struct wb_validate_result *p)
@@ -369,7 +368,7 @@ static void put_scores(struct wb_document *document, const struct wb_recordings_
         {.heading = "Loading and unloading", .right = true},
         {.heading = "Paper's route", .right = true},
     };
-    static const struct wb_recordings_cycle_pages_score scores[] = {
+    static const struct wb_recordings_score scores[] = {
         {"Loading, RMS", PART, OF(elastoplastic.rms), WB_PERCENT, 2},
         {"Loading, largest error", PART, OF(elastoplastic.max_error), WB_PERCENT, 2},
         {"Loading, bound of the RMS", PART, OF(bounds[WB_VALIDATE_LOADING].bound), WB_PERCENT, 2},
@@ -401,8 +400,8 @@ static void put_scores(struct wb_document *document, const struct wb_recordings_
         "The same samples by the law of this chapter and by that of the paper's route, for each "
         "part of the test.",
         WB_COUNT(columns), columns);
-    wb_recordings_cycle_pages_put_scores(table, scores, WB_COUNT(scores),
-                                         (const struct wb_validate_result *[2]){p, q});
+    wb_recordings_cycle_put_scores(table, scores, WB_COUNT(scores),
+                                   (const struct wb_validate_result *[2]){p, q});
     for (int i = 0; i < p->cycles.n_loops; i++)
         put_loop(table, &p->cycles, q ? &q->cycles : NULL, i);
     put_bounds(document, p);

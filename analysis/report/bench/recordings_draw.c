@@ -16,10 +16,10 @@ void wb_recordings_draw_slug(char slug[64], const char *name)
     slug[n] = '\0';
 }
 
-const struct wb_recordings_results_wire *
-wb_recordings_draw_wire(const struct wb_recordings_results *results, int index)
+const struct wb_recordings_results_wire *wb_recordings_draw_wire(const struct wb_figures_item *item)
 {
-    return &results->wires[index];
+    const struct wb_recordings_results *const results = item->results;
+    return &results->wires[item->index];
 }
 
 int wb_recordings_draw_count(const void *context)
@@ -31,13 +31,11 @@ int wb_recordings_draw_count(const void *context)
 enum wb_status wb_recordings_draw_start(struct wb_figures_item *item, const char *kind,
                                         double width, double height)
 {
-    const struct wb_recordings_results *const results = item->results;
     char slug[64] = "all", name[128];
     if (item->row->count)
-        wb_recordings_draw_slug(
-            slug, wb_recordings_draw_wire(results, item->index)->wanted->product.name);
+        wb_recordings_draw_slug(slug, wb_recordings_draw_wire(item)->wanted->product.name);
     snprintf(name, sizeof name, "%s-%s", slug, kind);
     WB_TRY(wb_figure_create(&item->figure, name, width, height));
-    wb_figure_set_footer(item->figure, wb_recordings_draw_measured(results));
+    wb_figure_set_footer(item->figure, wb_recordings_draw_measured(item->results));
     return WB_OK;
 }

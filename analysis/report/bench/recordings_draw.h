@@ -11,10 +11,10 @@ const char *wb_recordings_draw_measured(const struct wb_recordings_results *resu
 /* A wire's name as part of file names, anchors and figure names: other characters become '-'. */
 void wb_recordings_draw_slug(char slug[64], const char *name);
 
-/* The count of rows that stand for one figure of each wire, and the wire of an index. */
+/* The count of rows that stand for one figure of each wire, and the wire of such a figure. */
 int wb_recordings_draw_count(const void *results);
 const struct wb_recordings_results_wire *
-wb_recordings_draw_wire(const struct wb_recordings_results *results, int index);
+wb_recordings_draw_wire(const struct wb_figures_item *item);
 
 /* Starts a figure that says where its data come from, named WIRE-KIND ("all-KIND" when its row is
  * not of single wires). */

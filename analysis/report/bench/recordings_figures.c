@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/report/bench/recordings_cycle_figures.h"
 #include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
@@ -91,16 +90,6 @@ static void find_frame(const struct wb_dataset *dataset, double deflection, stru
     }
 }
 
-static int n_cycles(const struct wb_dataset *dataset)
-{
-    int n = 0;
-    for (size_t i = 0; i < dataset->n_rows; i++) {
-        if (dataset->rows[i].cycle > n)
-            n = dataset->rows[i].cycle;
-    }
-    return n;
-}
-
 /* Adds the rows of one cycle (only its loading, or all of it but slack) as a line. Below zero
  * deflection, where no cycle is, the tip lies on its rest. */
 static void add_rows(struct wb_panel *panel, const char *label, const struct wb_dataset *dataset,
@@ -142,8 +131,8 @@ most_cycles(const struct wb_recordings_results_wire *wire, int *most)
         const struct wb_recordings_results_tests *const tests = &wire->steps[k].tests;
         for (int i = 0; i < tests->n; i++) {
             const struct wb_recordings_results_test *const test = &tests->items[i];
-            if (test->usable && n_cycles(&test->dataset) > *most) {
-                *most = n_cycles(&test->dataset);
+            if (test->usable && wb_cycle_later_count(&test->dataset) > *most) {
+                *most = wb_cycle_later_count(&test->dataset);
                 best = test;
             }
         }
@@ -153,18 +142,16 @@ most_cycles(const struct wb_recordings_results_wire *wire, int *most)
 
 static enum wb_status draw_cycles(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = item->results;
-    const struct wb_recordings_results_wire *const wire =
-        wb_recordings_draw_wire(results, item->index);
     int most;
-    const struct wb_recordings_results_test *const best = most_cycles(wire, &most);
+    const struct wb_recordings_results_test *const best =
+        most_cycles(wb_recordings_draw_wire(item), &most);
     if (!best)
         return WB_OK;
     WB_TRY(wb_recordings_draw_start(item, "cycles", WB_PDF_HALF_WIDTH, 200.0));
     wb_text_append(&item->caption,
                    "Cycles of sample %d, %g mm, %s; stretches with a slack strand left out.",
                    best->dataset.info.sample, best->dataset.info.length / WB_MM,
-                   wb_recordings_draw_measured(results));
+                   wb_recordings_draw_measured(item->results));
     struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     set_force_axes(panel, 0.0);
     for (int cycle = 1; cycle <= most; cycle++) {
@@ -184,8 +171,7 @@ static enum wb_status draw_samples(struct wb_figures_item *item)
 {
     static const enum wb_figure_dash dashes[] = {WB_DASH_DASHED, WB_DASH_MIXED, WB_DASH_DOTTED};
     const struct wb_recordings_results *const results = item->results;
-    const struct wb_recordings_results_wire *const wire =
-        wb_recordings_draw_wire(results, item->index);
+    const struct wb_recordings_results_wire *const wire = wb_recordings_draw_wire(item);
     const struct wb_recordings_results_tests *const tests =
         &wire->steps[WB_RECORDINGS_CALIBRATION].tests;
     const struct wb_validate_result *const fit =
@@ -200,7 +186,7 @@ static enum wb_status draw_samples(struct wb_figures_item *item)
                    "<i>F</i><sub>max</sub> = %.1f mN.",
                    curve->n_samples, wb_pages_plural(curve->n_samples, "sample", "samples"),
                    results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
-                   wb_recordings_draw_measured(results), curve->max_force / WB_MN);
+                   wb_recordings_draw_measured(item->results), curve->max_force / WB_MN);
     struct wb_panel *const panel = add_force_panel(item, curve->max_force);
     char label[64];
     snprintf(label, sizeof label, "range of %d", curve->n_samples);
@@ -237,11 +223,8 @@ static enum wb_status draw_shapes(struct wb_figures_item *item)
 {
     static const enum wb_figure_marker markers[] = {
         WB_MARKER_CIRCLE, WB_MARKER_SQUARE, WB_MARKER_TRIANGLE, WB_MARKER_DIAMOND, WB_MARKER_RING};
-    const struct wb_recordings_results *const results = item->results;
-    const struct wb_recordings_results_wire *const wire =
-        wb_recordings_draw_wire(results, item->index);
     const struct wb_recordings_results_test *const test =
-        first_with_shapes(&wire->steps[WB_RECORDINGS_CALIBRATION].tests);
+        first_with_shapes(&wb_recordings_draw_wire(item)->steps[WB_RECORDINGS_CALIBRATION].tests);
     if (!test)
         return WB_OK;
     WB_TRY(wb_recordings_draw_start(item, "shapes", WB_PDF_WIDTH, 300.0));
@@ -249,7 +232,7 @@ static enum wb_status draw_shapes(struct wb_figures_item *item)
     wb_text_append(&item->caption,
                    "Shapes of sample %d, %g mm, on its first loading, %s: the markers, moved onto "
                    "the wire's axis, in the clamp's frame.",
-                   info->sample, info->length / WB_MM, wb_recordings_draw_measured(results));
+                   info->sample, info->length / WB_MM, wb_recordings_draw_measured(item->results));
     struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
     wb_figure_set_equal_aspect(panel);
@@ -430,15 +413,19 @@ static void add_measured(struct wb_panel *panel, const struct wb_curve *curve,
 static const struct wb_figure_style computed_style = {
     .colour = WB_PALETTE_INK, .width = 1.2, .dash = WB_DASH_DASHED};
 
-/* Measured curve and calibrated beam of a step that is done, with room above for the inset. */
+/* Measured curve and calibrated beam of a step, with room above for the inset; F_max in the
+ * caption. */
 static enum wb_status draw_step(struct wb_figures_item *item, enum wb_recordings_purpose purpose,
                                 double room)
 {
     static const char *const labels[] = {"computed, calibrated", "computed, elastoplastic"};
-    const struct wb_recordings_results_wire *const wire =
-        wb_recordings_draw_wire(item->results, item->index);
-    const struct wb_validate_result *const result = &wire->steps[purpose].result;
+    const struct wb_recordings_results_wire *const wire = wb_recordings_draw_wire(item);
+    const struct wb_validate_result *const result = wb_recordings_results_of(wire, purpose);
     const struct wb_colour colour = wb_palette_wire(item->index);
+    if (!result)
+        return WB_OK;
+    wb_text_append(&item->caption, " <i>F</i><sub>max</sub> = %.1f mN.",
+                   result->curve.max_force / WB_MN);
     WB_TRY(wb_recordings_draw_start(item, wb_recordings_purposes[purpose], WB_PDF_WIDTH, 208.0));
     struct wb_panel *const panel = add_force_panel(item, result->curve.max_force);
     wb_figure_set_y_range(panel, (double)NAN, room * result->curve.max_force / WB_MN);
@@ -456,16 +443,11 @@ static enum wb_status draw_step(struct wb_figures_item *item, enum wb_recordings
 static enum wb_status draw_calibration(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
-    const struct wb_validate_result *const fit = wb_recordings_results_of(
-        wb_recordings_draw_wire(results, item->index), WB_RECORDINGS_CALIBRATION);
-    if (!fit)
-        return WB_OK;
     wb_text_append(&item->caption,
                    "Calibration at %g mm: mean of the samples, %s, and the calibrated beam. Inset: "
-                   "markers of one sample and computed shape at half and at full deflection. "
-                   "<i>F</i><sub>max</sub> = %.1f mN.",
+                   "markers of one sample and computed shape at half and at full deflection.",
                    results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
-                   wb_recordings_draw_measured(results), fit->curve.max_force / WB_MN);
+                   wb_recordings_draw_measured(item->results));
     return draw_step(item, WB_RECORDINGS_CALIBRATION, 1.25);
 }
 
@@ -473,17 +455,12 @@ static enum wb_status draw_validation(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
     const double *const length = results->campaign->length;
-    const struct wb_validate_result *const validation = wb_recordings_results_of(
-        wb_recordings_draw_wire(results, item->index), WB_RECORDINGS_VALIDATION);
-    if (!validation)
-        return WB_OK;
     wb_text_append(
         &item->caption,
-        "Validation at %g mm: mean of the samples, %s, the beam calibrated at %g mm, and "
-        "for contrast the same beam without yielding, which leaves the frame. Inset as "
-        "before. <i>F</i><sub>max</sub> = %.1f mN.",
-        length[WB_RECORDINGS_VALIDATION] / WB_MM, wb_recordings_draw_measured(results),
-        length[WB_RECORDINGS_CALIBRATION] / WB_MM, validation->curve.max_force / WB_MN);
+        "Validation at %g mm: mean of the samples, %s, the beam calibrated at %g mm, and for "
+        "contrast the same beam without yielding, which leaves the frame. Inset as before.",
+        length[WB_RECORDINGS_VALIDATION] / WB_MM, wb_recordings_draw_measured(item->results),
+        length[WB_RECORDINGS_CALIBRATION] / WB_MM);
     /* The elastic curve goes far beyond; it may leave the frame. */
     return draw_step(item, WB_RECORDINGS_VALIDATION, 1.45);
 }
@@ -491,8 +468,7 @@ static enum wb_status draw_validation(struct wb_figures_item *item)
 static enum wb_status draw_error(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
-    const struct wb_recordings_results_wire *const wire =
-        wb_recordings_draw_wire(results, item->index);
+    const struct wb_recordings_results_wire *const wire = wb_recordings_draw_wire(item);
     const struct wb_figure_style styles[] = {
         {.colour = wb_palette_ink(), .width = 1.1, .dash = WB_DASH_DASHED},
         {.colour = wb_palette_wire(item->index), .width = 1.5}};
@@ -503,7 +479,7 @@ static enum wb_status draw_error(struct wb_figures_item *item)
                    "Error of the computed force against the mean force, %s (eq. 18), as part of "
                    "each curve's own <i>F</i><sub>max</sub>, with its RMS (eq. 19); each sample is "
                    "computed with its own bow.",
-                   wb_recordings_draw_measured(results));
+                   wb_recordings_draw_measured(item->results));
     struct wb_panel *const panel = add_error_panel(item);
     for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
         const struct wb_validate_result *const result =
@@ -525,12 +501,11 @@ static enum wb_status draw_error(struct wb_figures_item *item)
 static void add_path(struct wb_figure *figure, const struct wb_calibrate_result *result,
                      struct wb_colour colour)
 {
-    const int n = result->n_path;
-    double *const values = wb_memory_new(4 * (size_t)n, sizeof *values);
-    double *const step = values, *const error = values + n, *const k = values + 2 * n,
-                  *const exponent = values + 3 * n;
-    for (int i = 0; i < n; i++) {
-        step[i] = i + 1;
+    const size_t n = (size_t)result->n_path;
+    double *const step = wb_memory_new(4 * n, sizeof *step), *const error = step + n;
+    double *const k = step + 2 * n, *const exponent = step + 3 * n;
+    for (size_t i = 0; i < n; i++) {
+        step[i] = (double)(i + 1);
         error[i] = result->path[i].error;
         k[i] = result->path[i].strength_coefficient / WB_MPA;
         exponent[i] = result->path[i].hardening_exponent;
@@ -541,13 +516,13 @@ static void add_path(struct wb_figure *figure, const struct wb_calibrate_result 
                        "\xce\xb4<sub>max</sub><sup>1/2</sup>)");
     wb_figure_set_logarithmic_y(errors);
     const struct wb_figure_style line = {.colour = colour, .width = 1.3};
-    wb_figure_add_line(errors, NULL, (size_t)n, step, error, &line);
+    wb_figure_add_line(errors, NULL, n, step, error, &line);
 
     struct wb_panel *const path = wb_figure_add_panel(figure);
     wb_figure_set_axes(path, "Hardening exponent <i>n</i>", "Strength coefficient <i>K</i> (MPa)");
     const struct wb_figure_style thin = {
         .colour = colour, .width = 0.8, .marker = WB_MARKER_CIRCLE, .marker_size = 2.4};
-    wb_figure_add_line(path, "best so far", (size_t)n, exponent, k, &thin);
+    wb_figure_add_line(path, "best so far", n, exponent, k, &thin);
     const double first_n = result->first_hardening_exponent;
     const double first_k = result->first_strength_coefficient / WB_MPA;
     const struct wb_figure_style start = {
@@ -559,14 +534,12 @@ static void add_path(struct wb_figure *figure, const struct wb_calibrate_result 
     const struct wb_figure_style end = {
         .colour = wb_palette_ink(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
     wb_figure_add_line(path, "calibrated", 1, &last_n, &last_k, &end);
-    free(values);
+    free(step);
 }
 
 static enum wb_status draw_optimiser(struct wb_figures_item *item)
 {
-    const struct wb_recordings_results *const results = item->results;
-    const struct wb_recordings_results_wire *const wire =
-        wb_recordings_draw_wire(results, item->index);
+    const struct wb_recordings_results_wire *const wire = wb_recordings_draw_wire(item);
     if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION) || wire->calibration.n_path < 1)
         return WB_OK;
     WB_TRY(wb_recordings_draw_start(item, "optimiser", WB_PDF_WIDTH, 170.0));
@@ -631,16 +604,18 @@ static bool is_on_first_page(const struct wb_recordings_results *results,
 static enum wb_status draw_all(struct wb_figures_item *item, enum wb_recordings_purpose purpose)
 {
     const struct wb_recordings_results *const results = item->results;
+    const bool is_first_page = strcmp(item->row->place, "found") == 0;
     struct wb_panel *panel = NULL;
+    if (!is_first_page && is_on_first_page(results, purpose))
+        return WB_OK;
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_validate_result *const result =
             wb_recordings_results_of(&results->wires[i], purpose);
         if (!result)
             continue;
         if (!panel) {
-            const double height = strcmp(item->row->place, "found") == 0 ? 160.0 : 205.0;
             WB_TRY(wb_recordings_draw_start(item, wb_recordings_purposes[purpose], WB_PDF_WIDTH,
-                                            height));
+                                            is_first_page ? 160.0 : 205.0));
             panel = wb_figure_add_panel(item->figure);
             set_force_axes(panel, 0.0);
         }
@@ -652,14 +627,11 @@ static enum wb_status draw_all(struct wb_figures_item *item, enum wb_recordings_
 static enum wb_status draw_calibrations(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
-    if (strcmp(item->row->place, "found") != 0 &&
-        is_on_first_page(results, WB_RECORDINGS_CALIBRATION))
-        return WB_OK;
     wb_text_append(&item->caption,
                    "Mean force and deflection of the samples of %g mm, %s, and the beam calibrated "
                    "against them%s. Bands: range of the samples.",
                    results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
-                   wb_recordings_draw_measured(results), route_of(results));
+                   wb_recordings_draw_measured(item->results), route_of(results));
     return draw_all(item, WB_RECORDINGS_CALIBRATION);
 }
 
@@ -667,13 +639,11 @@ static enum wb_status draw_validations(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
     const double *const length = results->campaign->length;
-    if (strcmp(item->row->place, "found") != 0 &&
-        is_on_first_page(results, WB_RECORDINGS_VALIDATION))
-        return WB_OK;
     wb_text_append(&item->caption,
                    "Mean force over deflection of the samples of %g mm, %s, and the prediction of "
                    "the beams calibrated at %g mm%s. Bands: range of the samples.",
-                   length[WB_RECORDINGS_VALIDATION] / WB_MM, wb_recordings_draw_measured(results),
+                   length[WB_RECORDINGS_VALIDATION] / WB_MM,
+                   wb_recordings_draw_measured(item->results),
                    length[WB_RECORDINGS_CALIBRATION] / WB_MM, route_of(results));
     return draw_all(item, WB_RECORDINGS_VALIDATION);
 }
@@ -717,7 +687,7 @@ static enum wb_status draw_errors(struct wb_figures_item *item)
                    "Error of the prediction at %g mm%s (eq. 18): distance of mean force, %s, and "
                    "computed force over the largest mean force of the wire.",
                    results->campaign->length[WB_RECORDINGS_VALIDATION] / WB_MM, route_of(results),
-                   wb_recordings_draw_measured(results));
+                   wb_recordings_draw_measured(item->results));
     return WB_OK;
 }
 

@@ -1,11 +1,10 @@
-#include "analysis/report/bench/recordings_found.h"
+#include "analysis/report/bench/recordings_pages.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "analysis/calibration/cycle/cycle_budget.h"
-#include "analysis/report/bench/recordings_cycle_pages.h"
 #include "analysis/report/found.h"
 #include "analysis/report/pages.h"
 #include "analysis/validation/validate_bounds.h"

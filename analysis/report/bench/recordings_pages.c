@@ -6,10 +6,9 @@
 #include <string.h>
 
 #include "analysis/align/align.h"
-#include "analysis/report/bench/recordings_cycle_pages.h"
 #include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/bench/recordings_figures.h"
-#include "analysis/report/bench/recordings_found.h"
+#include "analysis/report/bench/recordings_pages.h"
 #include "analysis/report/pages.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -370,14 +369,11 @@ static void put_wires(struct wb_document *document, const struct wb_recordings_r
     }
 }
 
-static double largest_force(const struct wb_dataset *dataset, int *cycles)
+static double largest_force(const struct wb_dataset *dataset)
 {
     double force = 0.0;
-    *cycles = 0;
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
-        if (row->cycle > *cycles)
-            *cycles = row->cycle;
         if (row->phase == WB_PHASE_LOAD && row->cycle == 1 && row->force > force)
             force = row->force;
     }
@@ -389,17 +385,15 @@ static void put_specimen(struct wb_document_table *table,
 {
     const struct wb_dataset *const dataset = &test->dataset;
     double seen = (double)NAN, t;
-    int cycles;
-    const double force = largest_force(dataset, &cycles);
     wb_json_get_number(wb_json_get(wb_json_get(dataset->document, "checks"), "markers"),
                        "seen_percent", &seen);
     wb_pages_row(table, label[0] != '\0', label);
     wb_pages_cell_number(table, dataset->info.length / WB_MM, 0);
     wb_pages_cell(table, WB_TONE_PLAIN, "%d", dataset->info.sample);
-    wb_pages_cell(table, WB_TONE_PLAIN, "%d", cycles);
+    wb_pages_cell(table, WB_TONE_PLAIN, "%d", wb_cycle_later_count(dataset));
     wb_pages_cell_number(table, wb_dataset_bow(&dataset->info) / WB_MM, 2);
     wb_pages_cell_number(table, wb_recordings_figures_turn(dataset, &t) / WB_MM, 1);
-    wb_pages_cell_number(table, force / WB_MN, 1);
+    wb_pages_cell_number(table, largest_force(dataset) / WB_MN, 1);
     wb_pages_cell_number(table, seen, 1);
     wb_pages_cell_plain(table, test->operator_name[0] ? WB_TONE_PLAIN : WB_TONE_QUIET,
                         test->operator_name[0] ? test->operator_name : "not given");
@@ -662,7 +656,7 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
         {.heading = "Calibration", .right = true},
         {.heading = "Validation", .right = true},
     };
-    static const struct wb_recordings_cycle_pages_score scores[] = {
+    static const struct wb_recordings_score scores[] = {
         {"RMS (eq. 19), each sample with its own bow", PART, OF(elastoplastic.rms), 1.0, 4},
         {"RMS beyond 5 mm", PART, OF(elastoplastic.rms_from_5mm), 1.0, 4},
         {"Largest error (eq. 18)", PART, OF(elastoplastic.max_error), 1.0, 4},
@@ -700,9 +694,9 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
         "times as much is exceeded in one of twenty validations. Share: its square over "
         "RMS<sup>2</sup>, at most 1; near 0 the error is the model's.",
         WB_COUNT(columns), columns);
-    wb_recordings_cycle_pages_put_scores(table, scores, WB_COUNT(scores),
-                                         (const struct wb_validate_result *[2]){&fit, v});
-    wb_recordings_cycle_pages_put_pair(table, "Mean bow of the samples", "mm", bows, 2);
+    wb_recordings_cycle_put_scores(table, scores, WB_COUNT(scores),
+                                   (const struct wb_validate_result *[2]){&fit, v});
+    wb_recordings_cycle_put_score(table, "Mean bow of the samples", "mm", bows, 2);
 }
 
 static void put_remarks(struct wb_document *document, const struct wb_calibrate_result *result)
