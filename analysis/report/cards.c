@@ -154,21 +154,15 @@ void wb_cards_put_pages(struct wb_document *document, const struct wb_cards *car
                           WB_COUNT(columns), columns);
     for (int i = 0; i < cards->n_laws; i++) {
         const struct wb_cards_law *const law = &cards->laws[i];
-        wb_document_row(table, false);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, law->stem);
+        wb_pages_row(table, false, law->stem);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, wb_text_string(&law->endings));
-        wb_pages_cell_number(table, law->curvature, wb_pages_decimals(law->curvature));
+        wb_pages_cell_rounded(table, law->curvature);
         wb_pages_cell_plain(table, WB_TONE_PLAIN,
                             law->has_way_back ? "loading, unloading" : "loading only");
     }
     for (int i = 0; i < cards->n_laws; i++) {
-        struct wb_text text = {0};
-        if (cards->laws[i].missing.length == 0)
-            continue;
-        wb_text_append(&text, "<b>");
-        wb_text_append_escaped(&text, cards->laws[i].stem);
-        wb_text_append(&text, "</b>, no card for ");
-        wb_text_append_escaped(&text, wb_text_string(&cards->laws[i].missing));
-        wb_pages_put_text(document, WB_BLOCK_ITEM, WB_TONE_PLAIN, &text);
+        if (cards->laws[i].missing.length > 0)
+            wb_pages_item(document, WB_TONE_PLAIN, "<b>", cards->laws[i].stem, "</b>, no card for ",
+                          wb_text_string(&cards->laws[i].missing));
     }
 }

@@ -22,6 +22,12 @@ static const char *or_not_given(const char *text)
 
 /* --- the figure --- */
 
+static struct wb_cell_deviation deviation_of(const struct wb_certificate *certificate, int point)
+{
+    return wb_cell_calibration_deviation(&certificate->points[0], &certificate->points[point],
+                                         certificate->rig->gravity);
+}
+
 /* Deviations from the first zero over the masses, of one direction. */
 static void add_way(struct wb_panel *panel, const struct wb_certificate *certificate, bool down)
 {
@@ -30,10 +36,8 @@ static void add_way(struct wb_panel *panel, const struct wb_certificate *certifi
     for (int i = 0; i < certificate->n; i++) {
         if (certificate->calibration->is_down[i] != down)
             continue;
-        const struct wb_cell_deviation deviation = wb_cell_calibration_deviation(
-            &certificate->points[0], &certificate->points[i], certificate->rig->gravity);
         x[n] = certificate->points[i].mass / WB_G;
-        y[n++] = deviation.deviation / WB_MG;
+        y[n++] = deviation_of(certificate, i).deviation / WB_MG;
     }
     const struct wb_figure_style style = {.colour = wb_palette_wire(down ? 1 : 0),
                                           .marker = down ? WB_MARKER_RING : WB_MARKER_CIRCLE,
@@ -57,11 +61,8 @@ static void add_fit(struct wb_panel *panel, const struct wb_certificate *certifi
 static double largest_deviation(const struct wb_certificate *certificate)
 {
     double largest = 0.0;
-    for (int i = 0; i < certificate->n; i++) {
-        const struct wb_cell_deviation deviation = wb_cell_calibration_deviation(
-            &certificate->points[0], &certificate->points[i], certificate->rig->gravity);
-        largest = fmax(largest, fabs(deviation.deviation));
-    }
+    for (int i = 0; i < certificate->n; i++)
+        largest = fmax(largest, fabs(deviation_of(certificate, i).deviation));
     return largest;
 }
 
@@ -98,33 +99,27 @@ static enum wb_status draw(struct wb_figure **out, const struct wb_certificate *
 
 /* --- the text --- */
 
-static void put_row(struct wb_document_table *table, const char *name, const char *value)
-{
-    wb_document_row(table, false);
-    wb_pages_cell(table, WB_TONE_PLAIN, "%s", name);
-    wb_pages_cell_plain(table, WB_TONE_PLAIN, value);
-}
-
 static void put_item(struct wb_document *document, const struct wb_certificate *certificate)
 {
     static const struct wb_document_column columns[] = {{.heading = "Item"},
                                                         {.heading = "", .wraps = true}};
     const struct wb_rig *const rig = certificate->rig;
-    char text[256], masses[96];
-    struct wb_document_table *const table = wb_document_table(document, NULL, 2, columns);
-    put_row(table, "Bench", rig->name);
-    put_row(table, "Load cell, serial number", or_not_given(rig->load_cell.serial_number));
-    snprintf(text, sizeof text, "%g g, reads up to %g g",
-             rig->load_cell.capacity / rig->gravity / WB_G,
-             rig->load_cell.overload / rig->gravity / WB_G);
-    put_row(table, "Capacity", text);
-    put_row(table, "Calibrated by its maker", or_not_given(rig->load_cell.calibration_date));
-    put_row(table, "Date of this measurement (UTC)", certificate->utc);
-    snprintf(masses, sizeof masses, "%d, up to %g g, each read for %g s once the reading was still",
-             certificate->n, certificate->calibration->span / WB_G, certificate->seconds);
-    put_row(table, "Masses", masses);
-    snprintf(text, sizeof text, "%.5f m/s2", rig->gravity);
-    put_row(table, "Gravity", text);
+    struct wb_document_table *const table =
+        wb_document_table(document, NULL, WB_COUNT(columns), columns);
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Bench", "%s", rig->name);
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Load cell, serial number", "%s",
+                      or_not_given(rig->load_cell.serial_number));
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Capacity", "%g g, reads up to %g g",
+                      rig->load_cell.capacity / rig->gravity / WB_G,
+                      rig->load_cell.overload / rig->gravity / WB_G);
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Calibrated by its maker", "%s",
+                      or_not_given(rig->load_cell.calibration_date));
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Date of this measurement (UTC)", "%s",
+                      certificate->utc);
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Masses",
+                      "%d, up to %g g, each read for %g s once the reading was still",
+                      certificate->n, certificate->calibration->span / WB_G, certificate->seconds);
+    wb_pages_row_pair(table, WB_TONE_PLAIN, "Gravity", "%.5f m/s2", rig->gravity);
 }
 
 static void put_points(struct wb_document *document, const struct wb_certificate *certificate)
@@ -144,8 +139,7 @@ static void put_points(struct wb_document *document, const struct wb_certificate
                           (int)WB_COUNT(columns), columns);
     for (int i = 0; i < certificate->n; i++) {
         const struct wb_cell_point *const point = &certificate->points[i];
-        const struct wb_cell_deviation deviation = wb_cell_calibration_deviation(
-            &certificate->points[0], point, certificate->rig->gravity);
+        const struct wb_cell_deviation deviation = deviation_of(certificate, i);
         wb_document_row(table, false);
         wb_pages_cell(table, WB_TONE_PLAIN, "%g %s", point->mass / WB_G,
                       certificate->calibration->is_down[i] ? "down"
@@ -174,9 +168,7 @@ static void put_results(struct wb_document *document, const struct wb_certificat
     for (int i = 0; i < WB_CELL_QUANTITIES; i++) {
         const struct wb_cell_result *const result = &certificate->calibration->results[i];
         const double none = (double)NAN;
-        wb_document_row(table, false);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN,
-                            wb_cell_calibration_name((enum wb_cell_quantity)i));
+        wb_pages_row(table, false, wb_cell_calibration_name((enum wb_cell_quantity)i));
         wb_pages_cell_number(table, result->known ? result->value / WB_PERCENT : none, 3);
         wb_pages_cell_number(table, result->known ? result->uncertainty / WB_PERCENT : none, 3);
         wb_pages_cell_number(table, result->known ? result->at / WB_G : none, 3);
@@ -190,9 +182,17 @@ static void put_results(struct wb_document *document, const struct wb_certificat
     }
 }
 
-static void fill(struct wb_document *document, const struct wb_certificate *certificate,
-                 const struct wb_figure *figure)
+static void build(struct wb_document *document, const struct wb_certificate *certificate,
+                  const struct wb_figure *figure)
 {
+    char footer[128], subtitle[128];
+    snprintf(footer, sizeof footer, "%swirebench %s (%s)",
+             certificate->rig->is_virtual ? "virtual rig, " : "", wb_version(),
+             wb_version_revision());
+    snprintf(subtitle, sizeof subtitle, "Load cell %s, %s",
+             or_not_given(certificate->rig->load_cell.serial_number), certificate->utc);
+    wb_document_init(document, "Certificate", "Calibration of a load cell with masses", subtitle,
+                     footer, certificate->utc);
     const bool passed = certificate->calibration->passed;
     if (certificate->rig->is_virtual)
         wb_document_notice(document, WB_TONE_ORIGIN,
@@ -224,37 +224,19 @@ static void fill(struct wb_document *document, const struct wb_certificate *cert
                           "on the date above.");
 }
 
-static enum wb_status render(const struct wb_certificate *certificate, struct wb_figure *figure,
-                             struct wb_text *pdf)
-{
-    struct wb_document document;
-    char footer[128], subtitle[128];
-    snprintf(footer, sizeof footer, "%swirebench %s (%s)",
-             certificate->rig->is_virtual ? "virtual rig, " : "", wb_version(),
-             wb_version_revision());
-    snprintf(subtitle, sizeof subtitle, "Load cell %s, %s",
-             or_not_given(certificate->rig->load_cell.serial_number), certificate->utc);
-    wb_document_init(&document, "Certificate", "Calibration of a load cell with masses", subtitle,
-                     footer, certificate->utc);
-    fill(&document, certificate, figure);
-    const enum wb_status status = wb_pdf_render(&document, pdf);
-    wb_document_release(&document);
-    return status;
-}
-
 enum wb_status wb_certificate_write(const struct wb_certificate *certificate, const char *path,
                                     bool force)
 {
     struct wb_figure *figure = NULL;
-    struct wb_text pdf = {0};
+    struct wb_document document = {0};
     if (!force && wb_file_exists(path))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists: choose another name, or --force", path);
     enum wb_status status = draw(&figure, certificate);
-    if (status == WB_OK)
-        status = render(certificate, figure, &pdf);
-    if (status == WB_OK)
-        status = wb_file_write(path, wb_text_string(&pdf), pdf.length);
-    wb_text_release(&pdf);
+    if (status == WB_OK) {
+        build(&document, certificate, figure);
+        status = wb_pdf_write(&document, path);
+    }
+    wb_document_release(&document);
     wb_figure_destroy(figure);
     return status;
 }

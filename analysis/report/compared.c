@@ -30,6 +30,13 @@ static const char *origin(const struct wb_compared *compared)
                                     : NULL;
 }
 
+/* Of verdicts. */
+static const enum wb_document_tone tones[] = {
+    [WB_GROUPS_EQUIVALENT] = WB_TONE_GOOD,
+    [WB_GROUPS_DIFFERENT] = WB_TONE_WARNING,
+    [WB_GROUPS_UNDECIDED] = WB_TONE_PLAIN,
+};
+
 static double percent(double log_ratio)
 {
     return expm1(log_ratio) / WB_PERCENT;
@@ -128,17 +135,13 @@ static void put_batches(struct wb_document *document, const struct wb_compared *
         wb_pages_cell_number(table, p->outer_diameter / WB_MM, 2);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", wb_properties_units(p));
     }
-    for (int i = 0; i < WB_COMPARE_SIDES; i++) {
-        char text[160];
-        snprintf(text, sizeof text, "<b>%c</b>: SHA-256 of the file <tt>%s</tt>", 'A' + i,
-                 compared->sha256[i]);
-        wb_document_item(document, WB_TONE_PLAIN, text);
-    }
+    for (int i = 0; i < WB_COMPARE_SIDES; i++)
+        wb_pages_put(document, WB_BLOCK_ITEM, WB_TONE_PLAIN,
+                     "<b>%c</b>: SHA-256 of the file <tt>%s</tt>", 'A' + i, compared->sha256[i]);
 }
 
 static void put_verdict_cell(struct wb_document_table *table, const struct wb_compare_quantity *q)
 {
-    static const enum wb_document_tone tones[] = {WB_TONE_GOOD, WB_TONE_WARNING, WB_TONE_PLAIN};
     char more[40] = "";
     if (q->verdict == WB_GROUPS_UNDECIDED && q->more > 0)
         snprintf(more, sizeof more, ", +%d", q->more);
@@ -195,9 +198,8 @@ static void put_quantities(struct wb_document *document, const struct wb_compare
 
 static void put_method(struct wb_document *document, const struct wb_compare *c)
 {
-    struct wb_text text = {0};
-    wb_text_append(
-        &text,
+    wb_pages_put(
+        document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN,
         "Welch's interval of the logarithm of the ratio, 90 %%. Within \xc2\xb1%.4g (%+.1f to "
         "%+.1f %%): equivalent. Outside of it as a whole: different. Else the specimens cannot "
         "tell. <i>\xce\xb1</i> = %g for each verdict, %d quantities. That all are equivalent is "
@@ -206,7 +208,6 @@ static void put_method(struct wb_document *document, const struct wb_compare *c)
         "of five such comparisons decide if mean and scatter are those found.",
         c->within, percent(-c->within), percent(c->within), WB_COMPARE_ALPHA, c->n_compared,
         WB_COMPARE_ALPHA, fmin(1.0, c->n_compared * WB_COMPARE_ALPHA));
-    wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
     wb_document_paragraph(
         document, "Gain of the cell, lengths and diameter cancel where both batches were tested "
                   "on one bench; between two benches they are in the ratio and not in the "
@@ -214,12 +215,19 @@ static void put_method(struct wb_document *document, const struct wb_compare *c)
                   "a law.");
 }
 
-static void fill(struct wb_document *document, const struct wb_compared *compared,
-                 const struct wb_figure *figure)
+static void build(struct wb_document *document, const struct wb_compared *compared,
+                  const struct wb_figure *figure)
 {
-    static const enum wb_document_tone tones[] = {WB_TONE_GOOD, WB_TONE_WARNING, WB_TONE_PLAIN};
     const struct wb_compare *const c = compared->compare;
     struct wb_text text = {0};
+    char footer[160], subtitle[160];
+    snprintf(footer, sizeof footer, "wirebench %s, revision %s%s%s", wb_version(),
+             wb_version_revision(), origin(compared) ? " \xc2\xb7 " : "",
+             origin(compared) ? origin(compared) : "");
+    snprintf(subtitle, sizeof subtitle, "A: %.60s \xc2\xb7 B: %.60s", compared->names[0],
+             compared->names[1]);
+    wb_document_init(document, "Comparison of two batches", "Two batches in bending", subtitle,
+                     footer, "");
     if (is_virtual(compared))
         wb_document_notice(document, WB_TONE_ORIGIN,
                            "<b>Virtual rig.</b> Specimens of a virtual rig are among these: no "
@@ -240,36 +248,18 @@ static void fill(struct wb_document *document, const struct wb_compared *compare
     put_method(document, c);
 }
 
-static enum wb_status render(const struct wb_compared *compared, const struct wb_figure *figure,
-                             struct wb_text *pdf)
-{
-    struct wb_document document;
-    char footer[160], subtitle[160];
-    snprintf(footer, sizeof footer, "wirebench %s, revision %s%s%s", wb_version(),
-             wb_version_revision(), origin(compared) ? " \xc2\xb7 " : "",
-             origin(compared) ? origin(compared) : "");
-    snprintf(subtitle, sizeof subtitle, "A: %.60s \xc2\xb7 B: %.60s", compared->names[0],
-             compared->names[1]);
-    wb_document_init(&document, "Comparison of two batches", "Two batches in bending", subtitle,
-                     footer, "");
-    fill(&document, compared, figure);
-    const enum wb_status status = wb_pdf_render(&document, pdf);
-    wb_document_release(&document);
-    return status;
-}
-
 enum wb_status wb_compared_write(const struct wb_compared *compared, const char *path, bool force)
 {
     struct wb_figure *figure = NULL;
-    struct wb_text pdf = {0};
+    struct wb_document document = {0};
     if (!force && wb_file_exists(path))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists: choose another name, or --force", path);
     enum wb_status status = draw(&figure, compared);
-    if (status == WB_OK)
-        status = render(compared, figure, &pdf);
-    if (status == WB_OK)
-        status = wb_file_write_text(path, &pdf);
-    wb_text_release(&pdf);
+    if (status == WB_OK) {
+        build(&document, compared, figure);
+        status = wb_pdf_write(&document, path);
+    }
+    wb_document_release(&document);
     wb_figure_destroy(figure);
     return status;
 }

@@ -9,6 +9,7 @@
 
 #include "analysis/plot/canvas.h"
 #include "analysis/plot/typeset.h"
+#include "base/file.h"
 
 #define WB_LOG_DOMAIN "report"
 
@@ -64,29 +65,24 @@ static void put_plain(struct pen *pen, double x, double y, const char *plain,
 
 static struct wb_colour tone_colour(enum wb_document_tone tone)
 {
-    switch (tone) {
-    case WB_TONE_GOOD:
-        return wb_palette_good();
-    case WB_TONE_WARNING:
-        return wb_palette_warning();
-    case WB_TONE_ORIGIN:
-        return wb_palette_wire(0);
-    case WB_TONE_QUIET:
-        return wb_palette_grey();
-    case WB_TONE_PLAIN:
-        break;
-    }
-    return wb_palette_ink();
+    const struct wb_colour colours[] = {
+        [WB_TONE_PLAIN] = wb_palette_ink(),       [WB_TONE_GOOD] = wb_palette_good(),
+        [WB_TONE_WARNING] = wb_palette_warning(), [WB_TONE_ORIGIN] = wb_palette_wire(0),
+        [WB_TONE_QUIET] = wb_palette_grey(),
+    };
+    return colours[tone];
 }
 
-static void rule(struct pen *pen, double x0, double x1, double y, double width,
-                 struct wb_colour colour)
+/* A line over the width of the text. */
+static void rule(struct pen *pen, double y, double width, struct wb_colour colour)
 {
+    if (pen->dry)
+        return;
     cairo_set_line_width(pen->cairo, width);
     cairo_set_dash(pen->cairo, NULL, 0, 0.0);
     wb_typeset_set_colour(pen->cairo, colour);
-    cairo_move_to(pen->cairo, x0, y);
-    cairo_line_to(pen->cairo, x1, y);
+    cairo_move_to(pen->cairo, margin_left, y);
+    cairo_line_to(pen->cairo, margin_left + WB_PDF_WIDTH, y);
     cairo_stroke(pen->cairo);
 }
 
@@ -99,10 +95,10 @@ static void draw_frame(struct pen *pen)
     if (pen->page > 1) {
         put_plain(pen, margin_left, 34.0, pen->document->title, &small);
         put_plain(pen, right_edge, 34.0, pen->document->kind, &right);
-        rule(pen, margin_left, right_edge, 47.0, 0.5, wb_palette_rule());
+        rule(pen, 47.0, 0.5, wb_palette_rule());
     }
     const double y = page_height - 40.0;
-    rule(pen, margin_left, right_edge, y - 5.0, 0.5, wb_palette_rule());
+    rule(pen, y - 5.0, 0.5, wb_palette_rule());
     put_plain(pen, margin_left, y, pen->document->footer, &small);
     char number[160];
     snprintf(number, sizeof number, "%s%.100s%sPage %d of %d",
@@ -161,6 +157,12 @@ static void put_text(struct pen *pen, double x, const char *markup,
         wb_typeset_draw(pen->cairo, x, pen->y, markup, style);
 }
 
+static void advance(struct pen *pen, double height)
+{
+    pen->y += height;
+    pen->page_used = true;
+}
+
 static void put_title(struct pen *pen)
 {
     const struct wb_typeset_style kicker = {
@@ -180,13 +182,12 @@ static void put_title(struct pen *pen)
     put_plain(pen, margin_left, pen->y, pen->document->title, &title);
     pen->y += plain_height(pen, pen->document->title, &title) + 2.0;
     put_plain(pen, margin_left, pen->y, pen->document->subtitle, &subtitle);
-    pen->y += plain_height(pen, pen->document->subtitle, &subtitle) + 10.0;
-    pen->page_used = true;
+    advance(pen, plain_height(pen, pen->document->subtitle, &subtitle) + 10.0);
 }
 
 static void bookmark(struct pen *pen, const struct wb_document_block *block)
 {
-    if (pen->dry || block->level < 1 || block->level > 2)
+    if (pen->dry)
         return;
     char place[64];
     snprintf(place, sizeof place, "page=%d pos=[0 %.1f]", pen->page, pen->y);
@@ -211,8 +212,7 @@ static void put_heading(struct pen *pen, const struct wb_document_block *block, 
         pen->y += before;
     bookmark(pen, block);
     put_plain(pen, margin_left, pen->y, block->text, &style);
-    pen->y += height + (is_section ? 7.0 : 4.0);
-    pen->page_used = true;
+    advance(pen, height + (is_section ? 7.0 : 4.0));
 }
 
 static void put_paragraph(struct pen *pen, const struct wb_document_block *block)
@@ -222,8 +222,7 @@ static void put_paragraph(struct pen *pen, const struct wb_document_block *block
     const double height = text_height(pen, block->text, &style);
     need(pen, height);
     put_text(pen, margin_left, block->text, &style);
-    pen->y += height + 6.0;
-    pen->page_used = true;
+    advance(pen, height + 6.0);
 }
 
 static void put_item(struct pen *pen, const struct wb_document_block *block)
@@ -236,8 +235,7 @@ static void put_item(struct pen *pen, const struct wb_document_block *block)
     need(pen, height);
     put_text(pen, margin_left + 2.0, "\xe2\x80\xa2", &bullet);
     put_text(pen, margin_left + 12.0, block->text, &style);
-    pen->y += height + 2.5;
-    pen->page_used = true;
+    advance(pen, height + 2.5);
 }
 
 static void put_box(struct pen *pen, double height, struct wb_colour edge, double alpha)
@@ -261,8 +259,7 @@ static void put_notice(struct pen *pen, const struct wb_document_block *block)
     put_box(pen, height, tone_colour(block->tone), 0.09);
     pen->y += 6.5;
     put_text(pen, margin_left + 13.0, block->text, &style);
-    pen->y += height - 6.5 + 8.0;
-    pen->page_used = true;
+    advance(pen, height - 6.5 + 8.0);
 }
 
 static void put_code(struct pen *pen, const struct wb_document_block *block)
@@ -275,14 +272,16 @@ static void put_code(struct pen *pen, const struct wb_document_block *block)
     need(pen, height);
     put_box(pen, height, wb_palette_grey(), 0.08);
     put_plain(pen, margin_left + 13.0, pen->y + 5.5, block->text, &style);
-    pen->y += height + 7.0;
-    pen->page_used = true;
+    advance(pen, height + 7.0);
 }
 
 /* --- tables --- */
 
-/* Tables up to this part of a page are not split. */
-#define LARGEST_WHOLE_TABLE 0.4
+/* Whether a table or a group of rows is not split: up to this part of a page. */
+static bool stays_whole(double height)
+{
+    return height <= 0.4 * (page_height - margin_top - margin_bottom);
+}
 
 static const double cell_gap = 10.0, cell_above = 2.6;
 
@@ -372,17 +371,33 @@ static void find_widths(struct pen *pen, const struct wb_document_table *table, 
     }
 }
 
+/* A cell of a row, or of the headings (row < 0). */
+struct placed {
+    const char *text;
+    struct wb_typeset_style style;
+};
+
+static struct placed place(const struct wb_document_table *table, int row, int column, double width)
+{
+    struct placed cell = {table->columns[column].heading,
+                          cell_style(&table->columns[column], row < 0)};
+    cell.style.width = width;
+    cell.style.line_spacing = 1.08;
+    if (row >= 0) {
+        const struct wb_document_cell *const of = &table->cells[row * table->n_columns + column];
+        cell.text = of->text;
+        cell.style.colour = tone_colour(of->tone);
+    }
+    return cell;
+}
+
 static double row_height(struct pen *pen, const struct wb_document_table *table, int row,
                          const double *widths)
 {
     double height = 0.0;
     for (int i = 0; i < table->n_columns; i++) {
-        struct wb_typeset_style style = cell_style(&table->columns[i], row < 0);
-        style.width = widths[i];
-        style.line_spacing = 1.08;
-        const char *const text =
-            row < 0 ? table->columns[i].heading : table->cells[row * table->n_columns + i].text;
-        height = fmax(height, text_height(pen, text, &style));
+        const struct placed cell = place(table, row, i, widths[i]);
+        height = fmax(height, text_height(pen, cell.text, &cell.style));
     }
     return height + 2.0 * cell_above;
 }
@@ -393,21 +408,12 @@ static void put_row(struct pen *pen, const struct wb_document_table *table, int 
     const double height = row_height(pen, table, row, widths);
     double x = margin_left;
     for (int i = 0; !pen->dry && i < table->n_columns; i++) {
-        struct wb_typeset_style style = cell_style(&table->columns[i], row < 0);
-        style.width = widths[i];
-        style.line_spacing = 1.08;
-        const char *text = table->columns[i].heading;
+        const struct placed cell = place(table, row, i, widths[i]);
         double y = pen->y + cell_above;
-        if (row >= 0) {
-            const struct wb_document_cell *const cell = &table->cells[row * table->n_columns + i];
-            text = cell->text;
-            if (cell->tone != WB_TONE_PLAIN)
-                style.colour = tone_colour(cell->tone);
-        } else {
-            /* Headings stand on the rule below them. */
-            y = pen->y + height - cell_above - text_height(pen, text, &style);
-        }
-        wb_typeset_draw(pen->cairo, x, y, text, &style);
+        /* Headings stand on the rule below them. */
+        if (row < 0)
+            y = pen->y + height - cell_above - text_height(pen, cell.text, &cell.style);
+        wb_typeset_draw(pen->cairo, x, y, cell.text, &cell.style);
         x += widths[i] + cell_gap;
     }
     pen->y += height;
@@ -427,16 +433,19 @@ static void put_table_head(struct pen *pen, const struct wb_document_table *tabl
 {
     if (has_headings(table))
         put_row(pen, table, -1, widths);
-    if (!pen->dry)
-        rule(pen, margin_left, margin_left + WB_PDF_WIDTH, pen->y, 0.8, wb_palette_grey());
-    pen->y += 1.0;
-    pen->page_used = true;
+    rule(pen, pen->y, 0.8, wb_palette_grey());
+    advance(pen, 1.0);
+}
+
+static struct wb_typeset_style caption_style(double width)
+{
+    return (struct wb_typeset_style){.size = smallest, .colour = wb_palette_grey(), .width = width};
 }
 
 static double caption_height(struct pen *pen, const struct wb_document_table *table)
 {
-    const struct wb_typeset_style caption = {.size = smallest, .width = WB_PDF_WIDTH};
-    return table->caption ? text_height(pen, table->caption, &caption) + 2.0 : 0.0;
+    const struct wb_typeset_style style = caption_style(WB_PDF_WIDTH);
+    return table->caption ? text_height(pen, table->caption, &style) + 2.0 : 0.0;
 }
 
 /* The height that must fit on the page for a table to begin on it: all of it, or the head and two
@@ -449,9 +458,7 @@ static double needed_height(struct pen *pen, const struct wb_document_table *tab
     for (int row = 0; row < table->n_rows; row++)
         rows += row_height(pen, table, row, widths);
     const double whole = head + rows + caption_height(pen, table) + 5.0;
-    if (whole <= LARGEST_WHOLE_TABLE * (page_height - margin_top - margin_bottom))
-        return whole;
-    return head + 2.0 * row_height(pen, table, 0, widths);
+    return stays_whole(whole) ? whole : head + 2.0 * row_height(pen, table, 0, widths);
 }
 
 /* The height of a row, and where it begins a group that should not be split, of the whole group. */
@@ -462,18 +469,14 @@ static double height_from(struct pen *pen, const struct wb_document_table *table
     double group = one;
     for (int k = row + 1; k < table->n_rows && !table->begins_group[k]; k++)
         group += row_height(pen, table, k, widths);
-    return table->begins_group[row] &&
-                   group <= LARGEST_WHOLE_TABLE * (page_height - margin_top - margin_bottom)
-               ? group
-               : one;
+    return table->begins_group[row] && stays_whole(group) ? group : one;
 }
 
 static void put_table(struct pen *pen, const struct wb_document_table *table)
 {
     double widths[WB_DOCUMENT_COLUMNS];
     find_widths(pen, table, widths);
-    const struct wb_typeset_style caption = {
-        .size = smallest, .colour = wb_palette_grey(), .width = WB_PDF_WIDTH};
+    const struct wb_typeset_style caption = caption_style(WB_PDF_WIDTH);
     const double above = caption_height(pen, table);
     need(pen, needed_height(pen, table, widths));
     put_table_head(pen, table, widths);
@@ -481,13 +484,12 @@ static void put_table(struct pen *pen, const struct wb_document_table *table)
         if (height_from(pen, table, row, widths) > room(pen)) {
             new_page(pen);
             put_table_head(pen, table, widths);
-        } else if (row > 0 && table->begins_group[row] && !pen->dry) {
-            rule(pen, margin_left, margin_left + WB_PDF_WIDTH, pen->y, 0.5, wb_palette_rule());
+        } else if (row > 0 && table->begins_group[row]) {
+            rule(pen, pen->y, 0.5, wb_palette_rule());
         }
         put_row(pen, table, row, widths);
     }
-    if (!pen->dry)
-        rule(pen, margin_left, margin_left + WB_PDF_WIDTH, pen->y + 0.5, 0.8, wb_palette_grey());
+    rule(pen, pen->y + 0.5, 0.8, wb_palette_grey());
     pen->y += 4.0;
     if (table->caption) {
         need(pen, above);
@@ -503,9 +505,7 @@ static double figures_height(struct pen *pen, const struct wb_document_block *bl
 {
     double height = 0.0;
     for (int i = 0; i < 2 && block->figures[i]; i++) {
-        const struct wb_typeset_style style = {.size = smallest,
-                                               .colour = wb_palette_grey(),
-                                               .width = wb_figure_width(block->figures[i])};
+        const struct wb_typeset_style style = caption_style(wb_figure_width(block->figures[i]));
         height = fmax(height, wb_figure_height(block->figures[i]) + 3.0 +
                                   text_height(pen, block->captions[i], &style));
     }
@@ -519,15 +519,14 @@ static void put_figures(struct pen *pen, const struct wb_document_block *block)
     const double top = pen->y;
     for (int i = 0; i < 2 && block->figures[i] && !pen->dry && pen->status == WB_OK; i++) {
         const double width = wb_figure_width(block->figures[i]);
-        const struct wb_typeset_style style = {
-            .size = smallest, .colour = wb_palette_grey(), .width = width};
+        const struct wb_typeset_style style = caption_style(width);
         const double x = margin_left + (i == 1 ? WB_PDF_WIDTH - width : 0.0);
         pen->status = wb_canvas_draw_figure(pen->cairo, block->figures[i], x, top);
         pen->y = top + wb_figure_height(block->figures[i]) + 3.0;
         put_text(pen, x, block->captions[i], &style);
     }
-    pen->y = top + height + 9.0;
-    pen->page_used = true;
+    pen->y = top + height;
+    advance(pen, 9.0);
 }
 
 /* --- all of it --- */
@@ -625,4 +624,14 @@ enum wb_status wb_pdf_render(const struct wb_document *document, struct wb_text 
         pen.status = wb_canvas_status(cairo_surface_status(surface), "the report");
     cairo_surface_destroy(surface);
     return pen.status;
+}
+
+enum wb_status wb_pdf_write(const struct wb_document *document, const char *path)
+{
+    struct wb_text pdf = {0};
+    enum wb_status status = wb_pdf_render(document, &pdf);
+    if (status == WB_OK)
+        status = wb_file_write_text(path, &pdf);
+    wb_text_release(&pdf);
+    return status;
 }

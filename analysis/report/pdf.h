@@ -13,4 +13,7 @@
 /* Appends the whole file to `pdf`. */
 WB_MUST_CHECK enum wb_status wb_pdf_render(const struct wb_document *document, struct wb_text *pdf);
 
+/* Writes the file, whole or not at all. */
+WB_MUST_CHECK enum wb_status wb_pdf_write(const struct wb_document *document, const char *path);
+
 #endif

@@ -19,13 +19,12 @@ void wb_simulation_pages_start(struct wb_document *document, const struct wb_kin
 static void put_missing_dataset(struct wb_document *document,
                                 const struct wb_simulation_entry *entry)
 {
-    char text[1700], name[600], problem[900];
+    char name[600], problem[900];
     if (!entry->wanted->wanted || entry->result->state == WB_SIMULATION_USABLE)
         return;
-    snprintf(text, sizeof text, "<b>%s</b>: %s. To compute it:",
-             wb_pages_escape(name, sizeof name, entry->wanted->name),
-             wb_pages_escape(problem, sizeof problem, wb_text_string(&entry->result->problem)));
-    wb_document_item(document, WB_TONE_WARNING, text);
+    wb_pages_put(document, WB_BLOCK_ITEM, WB_TONE_WARNING, "<b>%s</b>: %s. To compute it:",
+                 wb_pages_escape(name, sizeof name, entry->wanted->name),
+                 wb_pages_escape(problem, sizeof problem, wb_text_string(&entry->result->problem)));
     wb_document_code(document, wb_text_string(&entry->wanted->command));
 }
 
@@ -82,12 +81,11 @@ void wb_simulation_pages_put_decisions(struct wb_document *document,
                           WB_COUNT(columns), columns);
     for (int i = 0; i < n; i++) {
         const struct wb_verdict *const v = &verdicts[i];
-        const double found = v->value / WB_PERCENT, limit = v->limit / WB_PERCENT;
         wb_document_row(table, false);
-        wb_pages_cell(table, WB_TONE_PLAIN, "%s", v->what);
+        wb_document_cell(table, WB_TONE_PLAIN, v->what);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, v->label ? v->label : "");
-        wb_pages_cell_number(table, found, wb_pages_decimals(found));
-        wb_pages_cell_number(table, limit, wb_pages_decimals(limit));
+        wb_pages_cell_rounded(table, v->value / WB_PERCENT);
+        wb_pages_cell_rounded(table, v->limit / WB_PERCENT);
         wb_pages_cell(table, v->kept ? WB_TONE_PLAIN : WB_TONE_WARNING,
                       v->kept ? "kept" : "exceeded");
     }
@@ -111,8 +109,7 @@ void wb_simulation_pages_put_datasets(struct wb_document *document, wb_simulatio
     for (int i = 0; list(results, i, &entry); i++) {
         if (!entry.wanted->wanted)
             continue;
-        wb_document_row(table, false);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, entry.wanted->name);
+        wb_pages_row(table, false, entry.wanted->name);
         if (entry.result->state == WB_SIMULATION_USABLE)
             wb_pages_cell_plain(table, WB_TONE_PLAIN, entry.result->revision);
         else
