@@ -17,10 +17,8 @@ enum {
 
 static bool is_taken(const struct wb_cards *cards, const char *stem)
 {
-    char name[STEM + 16];
-    snprintf(name, sizeof name, "cards/%s.yaml", stem);
-    for (int i = 0; i < cards->n; i++) {
-        if (strcmp(cards->files[i].name, name) == 0)
+    for (int i = 0; i < cards->n_laws; i++) {
+        if (strcmp(cards->laws[i].stem, stem) == 0)
             return true;
     }
     return false;

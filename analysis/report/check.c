@@ -27,6 +27,13 @@ struct pair {
     char again[WB_PATH];                        /* "": not computed */
 };
 
+static const char *text_of(const struct wb_json *entry, const char *key)
+{
+    const char *text = "";
+    wb_json_get_text(entry, key, &text);
+    return text;
+}
+
 /* --- signature and files --- */
 
 static enum wb_status check_signature(const struct wb_check_order *order)
@@ -50,10 +57,9 @@ static enum wb_status check_signature(const struct wb_check_order *order)
 static enum wb_status check_files(const struct pair *pair)
 {
     int n = 0;
-    const char *number = "";
     WB_TRY(wb_manifest_check_files(pair->signed_manifest, pair->order->folder, &n));
-    wb_json_get_text(pair->signed_manifest, "report", &number);
-    fprintf(pair->order->out, "files: %d as signed, report %s\n", n, number);
+    fprintf(pair->order->out, "files: %d as signed, report %s\n", n,
+            text_of(pair->signed_manifest, "report"));
     return WB_OK;
 }
 
@@ -63,10 +69,9 @@ static enum wb_status check_files(const struct pair *pair)
 static enum wb_status find_campaign(const struct pair *pair, char path[WB_PATH])
 {
     const struct wb_json *const campaign = wb_json_get(pair->signed_manifest, "campaign");
-    const char *name = "", *wanted = "", *const given = pair->order->campaign;
+    const char *const name = text_of(campaign, "file"), *const given = pair->order->campaign;
+    const char *const wanted = text_of(campaign, "sha256");
     char sha256[WB_SHA256_TEXT];
-    wb_json_get_text(campaign, "file", &name);
-    wb_json_get_text(campaign, "sha256", &wanted);
     path[0] = '\0';
     if (given || wb_file_exists(name))
         WB_TRY(wb_file_join(path, "", given ? given : name));
@@ -111,13 +116,6 @@ static enum wb_status compute(struct pair *pair, const struct wb_kind *const *ki
         return WB_OK;
     WB_TRY(wb_file_join(path, pair->again, wb_manifest_name));
     return wb_json_read(&pair->manifest, path);
-}
-
-static const char *text_of(const struct wb_json *entry, const char *key)
-{
-    const char *text = "";
-    wb_json_get_text(entry, key, &text);
-    return text;
 }
 
 /* How far an input stands in a list: not at all, with another sum, as it is. */

@@ -52,9 +52,8 @@ enum wb_status wb_openpgp_sign(const char *path, const char *signature, const ch
                                  path,      NULL};
     struct wb_program_answer answer;
     char why[300];
-    enum wb_status status = run_gpg(&answer, words);
-    if (status != WB_OK)
-        return status;
+    enum wb_status status = WB_OK;
+    WB_TRY(run_gpg(&answer, words));
     if (answer.code != 0)
         status = wb_fail(WB_ERR_IO, "gpg did not sign '%s': %s", path, reason_of(&answer, why));
     wb_program_answer_release(&answer);

@@ -21,20 +21,15 @@ static void append_replaced(struct wb_text *text, const char *message, const cha
     wb_text_append(text, "%s", message);
 }
 
-static void append(const struct wb_reasons *reasons, const char *message)
-{
-    if (reasons->problem->length > 0)
-        wb_text_append(reasons->problem, "; ");
-    append_replaced(reasons->problem, message, reasons->path, reasons->name);
-}
-
 static void keep(const struct wb_reasons *reasons, enum wb_status status,
                  const struct wb_reason *why)
 {
-    if (why->text[0])
-        append(reasons, why->text);
-    else if (reasons->problem->length == 0)
-        append(reasons, wb_status_text(status));
+    struct wb_text *const problem = reasons->problem;
+    if (problem->length > 0 && !why->text[0])
+        return;
+    wb_text_append(problem, "%s", problem->length > 0 ? "; " : "");
+    append_replaced(problem, why->text[0] ? why->text : wb_status_text(status), reasons->path,
+                    reasons->name);
 }
 
 void wb_reasons_fail(const struct wb_reasons *reasons, enum wb_status status,

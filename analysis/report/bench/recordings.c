@@ -27,8 +27,7 @@ struct reading {
     int n_excluded;
     struct exclusion *excluded; /* (n_excluded) */
     struct wb_index index;
-    bool has_index;
-    char index_problem[320];
+    char not_listed[320]; /* why the index does not list a sample */
 };
 
 /* --- single parts --- */
@@ -162,10 +161,7 @@ static enum wb_status take_from_index(const struct reading *reading,
         struct wb_recordings_test test = {.sample = sample, .seed = -1};
         snprintf(test.name, sizeof test.name, "%.60s, %g mm, sample %d", wire->label,
                  length / WB_MM, sample);
-        if (reading->has_index)
-            snprintf(test.missing, sizeof test.missing, "not in the index of recordings");
-        else
-            snprintf(test.missing, sizeof test.missing, "%s", reading->index_problem);
+        memcpy(test.missing, reading->not_listed, sizeof test.missing);
         add_test(tests, &test);
     }
     if (tests->n > 1)
@@ -253,8 +249,7 @@ static enum wb_status check_excluded(const struct reading *reading,
         if (!reading->excluded[i].is_found)
             return wb_config_refuse(
                 wb_config_item(list, i), "recording",
-                "'%s' is not a recording of this campaign: give its name as the "
-                "report has it",
+                "'%s' is not a recording of this campaign: give its name as the report has it",
                 reading->excluded[i].name);
     }
     return WB_OK;
@@ -324,13 +319,11 @@ static enum wb_status read_index(struct reading *reading, const char *given)
         found = wb_file_find_data(path, default_index) == WB_OK;
     }
     if (!found) {
-        snprintf(reading->index_problem, sizeof reading->index_problem,
+        snprintf(reading->not_listed, sizeof reading->not_listed,
                  "there is no index of recordings '%.200s'", given[0] ? given : default_index);
         return WB_OK;
     }
-    WB_TRY(wb_index_read(&reading->index, path, NULL));
-    reading->has_index = true;
-    return WB_OK;
+    return wb_index_read(&reading->index, path, NULL);
 }
 
 static enum wb_status read_all(struct reading *reading, const struct wb_config_node *root)
@@ -366,7 +359,7 @@ static enum wb_status read_all(struct reading *reading, const struct wb_config_n
 
 enum wb_status wb_recordings_keys(void *context, const struct wb_config_node *root)
 {
-    struct reading reading = {.campaign = context};
+    struct reading reading = {.campaign = context, .not_listed = "not in the index of recordings"};
     const enum wb_status status = read_all(&reading, root);
     wb_index_release(&reading.index);
     free(reading.excluded);
@@ -388,14 +381,12 @@ int wb_recordings_count(const struct wb_recordings *campaign, int *n_missing)
 {
     int n = 0;
     *n_missing = 0;
-    for (int i = 0; i < campaign->n_wires; i++) {
-        const struct wb_recordings_tests *const tests = campaign->wires[i].tests;
-        for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
-            for (int j = 0; j < tests[k].n; j++) {
-                n += !tests[k].items[j].excluded.is_excluded;
-                *n_missing +=
-                    tests[k].items[j].missing[0] && !tests[k].items[j].excluded.is_excluded;
-            }
+    for (int i = 0; i < WB_RECORDINGS_PURPOSES * campaign->n_wires; i++) {
+        const struct wb_recordings_tests *const tests =
+            &campaign->wires[i / WB_RECORDINGS_PURPOSES].tests[i % WB_RECORDINGS_PURPOSES];
+        for (int k = 0; k < tests->n; k++) {
+            n += !tests->items[k].excluded.is_excluded;
+            *n_missing += tests->items[k].missing[0] && !tests->items[k].excluded.is_excluded;
         }
     }
     return n;

@@ -641,12 +641,11 @@ enum wb_status wb_recordings_cycle_figures_valley(struct wb_figures_item *item)
     WB_TRY(wb_recordings_draw_start(item, "valley", WB_PDF_WIDTH, 200.0));
     wb_text_append(
         &item->caption,
-        "Ludwik's <i>K</i> and <i>n</i> by the first loading of sample %d alone, %s; at "
-        "each pair <i>E</i>, <i>\xcf\x83</i><sub>Y</sub>, bow and level fit best. Within "
-        "the line, <i>K</i> from %.0f to %.0f MPa and <i>n</i> from %.3f to %.3f, a pair "
-        "fits as well as the best (misfit %.3f %%, limit %.3f %%, <i>F</i>-test of "
-        "95 %%). Right: misfit over the smallest; <i>y</i> is the stress that hardening "
-        "adds at a plastic strain of 0.003.",
+        "Ludwik's <i>K</i> and <i>n</i> by the first loading of sample %d alone, %s; at each pair "
+        "<i>E</i>, <i>\xcf\x83</i><sub>Y</sub>, bow and level fit best. Within the line, <i>K</i> "
+        "from %.0f to %.0f MPa and <i>n</i> from %.3f to %.3f, a pair fits as well as the best "
+        "(misfit %.3f %%, limit %.3f %%, <i>F</i>-test of 95 %%). Right: misfit over the smallest; "
+        "<i>y</i> is the stress that hardening adds at a plastic strain of 0.003.",
         cycle->calibration.members[0].sample, measured_of(item), valley->strength_low / WB_MPA,
         valley->strength_high / WB_MPA, valley->exponent_low, valley->exponent_high,
         100.0 * valley->best_misfit, 100.0 * valley->limit);

@@ -27,8 +27,8 @@ static const char *minus(double value)
 
 /* --- sentences that the first page has, too --- */
 
-void wb_recordings_cycle_pages_append(struct wb_text *text, const char *name,
-                                      enum wb_quantity_id id, const struct wb_estimate *e)
+void wb_recordings_cycle_append(struct wb_text *text, const char *name, enum wb_quantity_id id,
+                                const struct wb_estimate *e)
 {
     const struct wb_quantity *const row = &wb_quantity_rows[id];
     const int decimals = wb_pages_decimals(e->value / row->scale);
@@ -40,8 +40,7 @@ void wb_recordings_cycle_pages_append(struct wb_text *text, const char *name,
                        e->high / row->scale);
 }
 
-void wb_recordings_cycle_pages_append_ranges(struct wb_text *text,
-                                             const struct wb_cycle_calibration *c)
+void wb_recordings_cycle_append_ranges(struct wb_text *text, const struct wb_cycle_calibration *c)
 {
     const struct wb_estimate *const stiffness = wb_recordings_cycle_stiffness(c);
     const struct wb_estimate *const ratio = &c->residual_curvature_ratio;
@@ -447,8 +446,8 @@ static void put_failures(struct wb_document *document, const struct wb_recording
     }
 }
 
-void wb_recordings_cycle_pages_summary(struct wb_document *document,
-                                       const struct wb_recordings_results *results)
+void wb_recordings_cycle_put_summary(struct wb_document *document,
+                                     const struct wb_recordings_results *results)
 {
     bool any = false, any_prediction = false;
     if (!results->campaign->whole_cycle)
@@ -483,25 +482,25 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
                        "<b>No law fits the data.</b> The best misses loading and unloading by "
                        "%.2f %% of <i>F</i><sub>max</sub>: ",
                        100.0 * c->ranked[0].misfit);
-        wb_recordings_cycle_pages_append_ranges(&text, c);
+        wb_recordings_cycle_append_ranges(&text, c);
         wb_text_append(&text, " ");
     } else {
         const char *const name = wb_candidate_name(c->chosen);
         wb_text_append(&text, "<b>%c%s.</b> ", toupper((unsigned char)name[0]), name + 1);
     }
     if (c->is_followed || !c->has_unloading) {
-        wb_recordings_cycle_pages_append(&text, "Moment at the largest curvature",
-                                         WB_QUANTITY_MOMENT, &c->moment[WB_CYCLE_MOMENTS - 1]);
-        wb_recordings_cycle_pages_append(
+        wb_recordings_cycle_append(&text, "Moment at the largest curvature", WB_QUANTITY_MOMENT,
+                                   &c->moment[WB_CYCLE_MOMENTS - 1]);
+        wb_recordings_cycle_append(
             &text, c->has_unloading ? "; unloading stiffness" : "; secant stiffness",
             WB_QUANTITY_UNLOADING_STIFFNESS, wb_recordings_cycle_stiffness(c));
     }
     if (c->is_followed) {
-        wb_recordings_cycle_pages_append(&text, "; residual curvature ratio",
-                                         WB_QUANTITY_RESIDUAL_CURVATURE_RATIO,
-                                         &c->residual_curvature_ratio);
-        wb_recordings_cycle_pages_append(&text, "; loop energy", WB_QUANTITY_LOOP_ENERGY,
-                                         &c->loop_energy);
+        wb_recordings_cycle_append(&text, "; residual curvature ratio",
+                                   WB_QUANTITY_RESIDUAL_CURVATURE_RATIO,
+                                   &c->residual_curvature_ratio);
+        wb_recordings_cycle_append(&text, "; loop energy", WB_QUANTITY_LOOP_ENERGY,
+                                   &c->loop_energy);
         wb_text_append(&text, ", bent to %.1f /m and back.", c->largest_curvature);
     }
     if (c->specimens_for_5_percent > 0)
@@ -841,9 +840,9 @@ static void put_remarks(struct wb_document *document, const struct wb_cycle_rema
     }
 }
 
-void wb_recordings_cycle_pages_wire(struct wb_document *document,
-                                    const struct wb_recordings_results *results, int index,
-                                    const struct wb_figures *figures)
+void wb_recordings_cycle_put_wire(struct wb_document *document,
+                                  const struct wb_recordings_results *results, int index,
+                                  const struct wb_figures *figures)
 {
     const struct wb_recordings_cycle *const cycle =
         wb_recordings_results_cycle(&results->wires[index]);

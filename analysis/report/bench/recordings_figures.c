@@ -545,8 +545,7 @@ static enum wb_status draw_optimiser(struct wb_figures_item *item)
     WB_TRY(wb_recordings_draw_start(item, "optimiser", WB_PDF_WIDTH, 170.0));
     wb_text_append(
         &item->caption,
-        "Left: error of the best corner of the simplex after each iteration, then of the "
-        "restart. "
+        "Left: error of the best corner of the simplex after each iteration, then of the restart. "
         "Right: its path from the first guess to the calibrated values.");
     add_path(item->figure, &wire->calibration, wb_palette_wire(item->index));
     return WB_OK;

@@ -60,16 +60,15 @@ static void append_cycle(struct wb_text *text, const struct wb_cycle_calibration
         wb_text_append(text,
                        "no law fits loading and unloading (%.1f %% of <i>F</i><sub>max</sub>); ",
                        c->ranked[0].misfit / WB_PERCENT);
-        wb_recordings_cycle_pages_append_ranges(text, c);
+        wb_recordings_cycle_append_ranges(text, c);
         return;
     }
-    wb_recordings_cycle_pages_append(
-        text, c->has_unloading ? "unloading stiffness" : "secant stiffness",
-        WB_QUANTITY_UNLOADING_STIFFNESS, wb_recordings_cycle_stiffness(c));
+    wb_recordings_cycle_append(text, c->has_unloading ? "unloading stiffness" : "secant stiffness",
+                               WB_QUANTITY_UNLOADING_STIFFNESS, wb_recordings_cycle_stiffness(c));
     if (c->has_unloading)
-        wb_recordings_cycle_pages_append(text, ", residual curvature ratio",
-                                         WB_QUANTITY_RESIDUAL_CURVATURE_RATIO,
-                                         &c->residual_curvature_ratio);
+        wb_recordings_cycle_append(text, ", residual curvature ratio",
+                                   WB_QUANTITY_RESIDUAL_CURVATURE_RATIO,
+                                   &c->residual_curvature_ratio);
     else
         wb_text_append(text, "; unloading was not recorded");
     wb_text_append(text, ", bent to %.0f /m.", c->largest_curvature);

@@ -205,7 +205,7 @@ static void put_merits(struct wb_document *document, const struct wb_recordings_
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
         const struct wb_validate_result *const v =
             wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
-        const double none = (double)NAN, share = wb_recordings_results_validation_share(wire);
+        const double none = (double)NAN, share = v ? v->scatter_share : none;
         wb_pages_row(table, false, wire->wanted->label);
         put_rms(table, results, wire, WB_RECORDINGS_CALIBRATION);
         put_rms(table, results, wire, WB_RECORDINGS_VALIDATION);
@@ -336,7 +336,7 @@ static void put_summary(struct wb_document *document, const struct wb_recordings
 {
     wb_recordings_found_put(document, results, figures);
     put_missing(document, results);
-    wb_recordings_cycle_pages_summary(document, results);
+    wb_recordings_cycle_put_summary(document, results);
     put_properties(document, results);
     put_merits(document, results);
     put_excluded(document, results);
@@ -478,8 +478,7 @@ static void put_rig(struct wb_document *document, const struct wb_recordings_res
     wb_pages_row_pair(table, WB_TONE_QUIET, "Name", "%s%s", rig->name,
                       test->is_virtual && !strstr(rig->name, "virtual") ? " (virtual rig)" : "");
     wb_pages_row_pair(table, WB_TONE_QUIET, "Load cell",
-                      "%.4g g, reads on to %.4g %%, serial number %s, "
-                      "calibrated %s",
+                      "%.4g g, reads on to %.4g %%, serial number %s, calibrated %s",
                       wb_recordings_results_capacity(rig) / WB_G,
                       cell->capacity > 0.0 ? 100.0 * cell->overload / cell->capacity : 0.0,
                       cell->serial_number[0] ? cell->serial_number : "not given",
@@ -577,8 +576,7 @@ static void put_corrections(struct wb_document *document,
     struct wb_document_table *const table = wb_document_table(
         document,
         "Over all recordings. The natural shape is not subtracted from the data; the model starts "
-        "from it. "
-        "Each correction of each recording, with its reason, is in report.json.",
+        "from it. Each correction of each recording, with its reason, is in report.json.",
         5, columns);
     for (size_t i = 0; i < wb_json_length(list); i++) {
         const char *name;
@@ -627,10 +625,9 @@ static void put_calibration_text(struct wb_document *document,
     struct wb_text text = {0};
     wb_text_append(
         &text,
-        "Calibrated on %d %s of %g mm: <i>E</i> = %.0f MPa, "
-        "<i>\xcf\x83</i><sub>Y</sub> = %.2f MPa, <i>K</i> = %.0f MPa, <i>n</i> = %.3f, "
-        "RMS of the fit with the mean bow %.4f of <i>F</i><sub>max</sub> = %.1f mN (largest "
-        "error %.4f).",
+        "Calibrated on %d %s of %g mm: <i>E</i> = %.0f MPa, <i>\xcf\x83</i><sub>Y</sub> = %.2f "
+        "MPa, <i>K</i> = %.0f MPa, <i>n</i> = %.3f, RMS of the fit with the mean bow %.4f of "
+        "<i>F</i><sub>max</sub> = %.1f mN (largest error %.4f).",
         n, wb_pages_plural(n, "sample", "samples"), campaign->length[0] / WB_MM,
         c->material.youngs_modulus / WB_MPA, c->material.yield_stress / WB_MPA,
         c->material.strength_coefficient / WB_MPA, c->material.hardening_exponent, c->rms,
@@ -767,7 +764,7 @@ static void put_wire(struct wb_document *document, const struct wb_recordings_re
         wb_text_append_escaped(&text, problem_of(&wire->steps[k]));
         wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
     }
-    wb_recordings_cycle_pages_wire(document, results, index, figures);
+    wb_recordings_cycle_put_wire(document, results, index, figures);
     const bool calibrated = wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION);
     if (wb_recordings_results_cycle(wire)) {
         wb_document_new_page(document);
@@ -912,8 +909,7 @@ void wb_recordings_pages_build(struct wb_document *document, const void *context
              wb_version_revision());
     if (results->outcome.n_usable == 0)
         snprintf(subtitle, sizeof subtitle,
-                 "none of %d recordings \xc2\xb7 wirebench %s, revision "
-                 "%s",
+                 "none of %d recordings \xc2\xb7 wirebench %s, revision %s",
                  results->outcome.n_wanted, wb_version(), wb_version_revision());
     wb_pages_start(document, "Calibration report", &results->campaign->head, subtitle,
                    results->any_virtual ? "virtual rig" : NULL, results->latest_utc);

@@ -16,12 +16,12 @@ void wb_recordings_found_put(struct wb_document *document,
                              const struct wb_figures *figures);
 
 /* Appends "NAME = 35.2 N mm2 (31.0 to 40.1)", in the quantity's unit and with its interval. */
-void wb_recordings_cycle_pages_append(struct wb_text *text, const char *name,
-                                      enum wb_quantity_id id, const struct wb_estimate *estimate);
+void wb_recordings_cycle_append(struct wb_text *text, const char *name, enum wb_quantity_id id,
+                                const struct wb_estimate *estimate);
 
 /* Appends unloading stiffness and residual curvature ratio between their ends over the laws. */
-void wb_recordings_cycle_pages_append_ranges(struct wb_text *text,
-                                             const struct wb_cycle_calibration *calibration);
+void wb_recordings_cycle_append_ranges(struct wb_text *text,
+                                       const struct wb_cycle_calibration *calibration);
 
 /* A row of a table that compares two validations: a number of each. */
 struct wb_recordings_score {
@@ -41,12 +41,12 @@ void wb_recordings_cycle_put_score(struct wb_document_table *table, const char *
 
 /* EI, M(kappa), residual curvature ratio and the verdict on the hardening rule of every wire;
  * nothing where the campaign does not calibrate on whole cycles. */
-void wb_recordings_cycle_pages_summary(struct wb_document *document,
-                                       const struct wb_recordings_results *results);
+void wb_recordings_cycle_put_summary(struct wb_document *document,
+                                     const struct wb_recordings_results *results);
 
 /* The chapter of one wire, below its heading; nothing where there is no such calibration. */
-void wb_recordings_cycle_pages_wire(struct wb_document *document,
-                                    const struct wb_recordings_results *results, int index,
-                                    const struct wb_figures *figures);
+void wb_recordings_cycle_put_wire(struct wb_document *document,
+                                  const struct wb_recordings_results *results, int index,
+                                  const struct wb_figures *figures);
 
 #endif

@@ -276,10 +276,10 @@ static void report_progress(const struct schedule *schedule, const struct job *j
     if (!schedule->progress)
         return;
     char what[160];
-    const char *const label = job->wire->wanted->label;
     static const char *const done[] = {"calibrated", "validated"};
     snprintf(what, sizeof what, "%s %.120s%s", job->test ? "aligned" : done[job->purpose],
-             job->test ? job->test->wanted->name : label, job->is_cycle ? " on whole cycles" : "");
+             job->test ? job->test->wanted->name : job->wire->wanted->label,
+             job->is_cycle ? " on whole cycles" : "");
     schedule->progress(schedule->context, schedule->n_finished, what);
 }
 
@@ -574,11 +574,4 @@ bool wb_recordings_results_keeps(const struct wb_recordings *campaign,
 double wb_recordings_results_capacity(const struct wb_rig *rig)
 {
     return rig->gravity > 0.0 ? rig->load_cell.capacity / rig->gravity : (double)NAN;
-}
-
-double wb_recordings_results_validation_share(const struct wb_recordings_results_wire *wire)
-{
-    const struct wb_validate_result *const validation =
-        wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
-    return validation ? validation->scatter_share : (double)NAN;
 }

@@ -121,9 +121,4 @@ bool wb_recordings_results_keeps(const struct wb_recordings *campaign,
  * is unknown. */
 double wb_recordings_results_capacity(const struct wb_rig *rig);
 
-/* Part of the mean square error of a validation that the scatter between specimens explains on
- * average, 0 to 1: scatter_share of validate.h. NaN if it is unknown or the validation is not
- * done. */
-double wb_recordings_results_validation_share(const struct wb_recordings_results_wire *wire);
-
 #endif

@@ -34,6 +34,7 @@ struct drawing {
     double *value; /* MPa */
     struct wb_figure_colours colours;
     double length; /* mm, of the bundle's axis */
+    struct wb_memory memory;
 };
 
 double wb_figures_surface_most_stress(const struct wb_surface *surface)
@@ -125,22 +126,15 @@ static void make_drawing(struct drawing *d, const struct wb_surface *surface, do
     const size_t nodes = (size_t)count_nodes(surface);
 
     *d = (struct drawing){.surface = surface};
-    d->sheets = wb_memory_new((size_t)surface->n, sizeof *d->sheets);
-    d->position = wb_memory_new(nodes, sizeof *d->position);
-    d->value = wb_memory_new(nodes, sizeof *d->value);
+    d->sheets = wb_memory_take(&d->memory, (size_t)surface->n, sizeof *d->sheets);
+    d->position = wb_memory_take(&d->memory, nodes, sizeof *d->position);
+    d->value = wb_memory_take(&d->memory, nodes, sizeof *d->value);
     make_sheets(d);
     if (!(most_stress > 0.0))
         most_stress = WB_MPA * round_up(wb_figures_surface_most_stress(surface) / WB_MPA);
     d->colours = (struct wb_figure_colours){
         .map = WB_PALETTE_SEQUENTIAL, .low = 0.0, .high = most_stress / WB_MPA};
     d->length = length_of(&d->sheets[0]);
-}
-
-static void release_drawing(struct drawing *d)
-{
-    free(d->sheets);
-    free(d->position);
-    free(d->value);
 }
 
 /* --- windows --- */
@@ -325,6 +319,6 @@ enum wb_status wb_figures_surface_draw(struct wb_figure **figure, const char *fi
         wb_figure_destroy(*figure);
         *figure = NULL;
     }
-    release_drawing(&d);
+    wb_memory_release(&d.memory);
     return status;
 }

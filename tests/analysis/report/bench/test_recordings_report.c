@@ -636,7 +636,7 @@ static void a_miss_of_a_limit_is_told_with_the_share_of_the_scatter(void **state
     assert_true(bad.results.outcome.exceeds_limit);
     assert_true(bad.results.outcome.is_complete);
     const struct wb_recordings_results_wire *const wire = &bad.results.wires[0];
-    const double share = wb_recordings_results_validation_share(wire);
+    const double share = wire->steps[WB_RECORDINGS_VALIDATION].result.scatter_share;
     const double r_v = fmin(wire->steps[WB_RECORDINGS_VALIDATION].result.scatter_rms,
                             wire->steps[WB_RECORDINGS_VALIDATION].result.residual_scatter_rms);
     const double r_c = fmin(wire->calibration.scatter_rms, wire->calibration.residual_scatter_rms);
