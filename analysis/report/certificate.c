@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "analysis/plot/figure.h"
+#include "analysis/report/figures.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
 #include "base/file.h"
@@ -31,19 +31,16 @@ static struct wb_cell_deviation deviation_of(const struct wb_certificate *certif
 /* Deviations from the first zero over the masses, of one direction. */
 static void add_way(struct wb_panel *panel, const struct wb_certificate *certificate, bool down)
 {
-    double x[WB_RIG_MASSES], y[WB_RIG_MASSES];
-    size_t n = 0;
+    struct wb_figures_points points = {0};
     for (int i = 0; i < certificate->n; i++) {
-        if (certificate->calibration->is_down[i] != down)
-            continue;
-        x[n] = certificate->points[i].mass / WB_G;
-        y[n++] = deviation_of(certificate, i).deviation / WB_MG;
+        if (certificate->calibration->is_down[i] == down)
+            wb_figures_add_point(&points, certificate->points[i].mass / WB_G,
+                                 deviation_of(certificate, i).deviation / WB_MG);
     }
     const struct wb_figure_style style = {.colour = wb_palette_wire(down ? 1 : 0),
                                           .marker = down ? WB_MARKER_RING : WB_MARKER_CIRCLE,
                                           .marker_size = 5.0};
-    if (n > 0)
-        wb_figure_add_line(panel, down ? "on the way down" : "on the way up", n, x, y, &style);
+    wb_figures_put_points(panel, down ? "on the way down" : "on the way up", &points, &style);
 }
 
 /* The line through all points, less the rig file's. */

@@ -122,6 +122,24 @@ void wb_figures_set_title(struct wb_panel *panel, const char *plain)
     wb_text_release(&title);
 }
 
+void wb_figures_add_point(struct wb_figures_points *points, double x, double y)
+{
+    points->x = wb_memory_room(points->x, &points->x_room, points->n + 1, sizeof *points->x);
+    points->y = wb_memory_room(points->y, &points->y_room, points->n + 1, sizeof *points->y);
+    points->x[points->n] = x;
+    points->y[points->n++] = y;
+}
+
+void wb_figures_put_points(struct wb_panel *panel, const char *label,
+                           struct wb_figures_points *points, const struct wb_figure_style *style)
+{
+    if (points->n > 0)
+        wb_figure_add_line(panel, label, points->n, points->x, points->y, style);
+    free(points->x);
+    free(points->y);
+    *points = (struct wb_figures_points){0};
+}
+
 double *wb_figures_scaled(const double *values, int n, double unit)
 {
     double *const scaled = wb_memory_new((size_t)n, sizeof *scaled);
@@ -130,7 +148,7 @@ double *wb_figures_scaled(const double *values, int n, double unit)
     return scaled;
 }
 
-double *wb_figures_deflections(const struct wb_curve *curve)
+static double *deflections(const struct wb_curve *curve)
 {
     double *const mm = wb_memory_new((size_t)curve->n, sizeof *mm);
     for (int i = 0; i < curve->n; i++)
@@ -141,7 +159,7 @@ double *wb_figures_deflections(const struct wb_curve *curve)
 void wb_figures_add_curve(struct wb_panel *panel, const char *label, const struct wb_curve *curve,
                           const double *values, double unit, const struct wb_figure_style *style)
 {
-    double *const x = wb_figures_deflections(curve);
+    double *const x = deflections(curve);
     double *const y = wb_figures_scaled(values, curve->n, unit);
     wb_figure_add_line(panel, label, (size_t)curve->n, x, y, style);
     free(x);
@@ -153,7 +171,7 @@ void wb_figures_add_range(struct wb_panel *panel, const char *label, const struc
 {
     if (curve->n_samples < 2)
         return;
-    double *const x = wb_figures_deflections(curve);
+    double *const x = deflections(curve);
     double *const low = wb_figures_scaled(curve->low, curve->n, WB_MN);
     double *const high = wb_figures_scaled(curve->high, curve->n, WB_MN);
     const double *const edges[2] = {low, high};

@@ -75,9 +75,18 @@ WB_MUST_CHECK enum wb_status wb_figures_start_simulation(struct wb_figure **figu
 /* A title of plain text. */
 void wb_figures_set_title(struct wb_panel *panel, const char *plain);
 
-/* Copies in another unit; the deflections of a curve in mm; for free(). */
+/* Points of a series, added one by one; starts zeroed. */
+struct wb_figures_points {
+    size_t n, x_room, y_room;
+    double *x, *y; /* (n), owned */
+};
+void wb_figures_add_point(struct wb_figures_points *points, double x, double y);
+/* Adds them to a panel, unless there are none, and empties the series. */
+void wb_figures_put_points(struct wb_panel *panel, const char *label,
+                           struct wb_figures_points *points, const struct wb_figure_style *style);
+
+/* Copies in another unit; for free(). */
 double *wb_figures_scaled(const double *values, int n, double unit);
-double *wb_figures_deflections(const struct wb_curve *curve);
 
 /* A line of `values` on the curve's deflections, and the range of its samples. */
 void wb_figures_add_curve(struct wb_panel *panel, const char *label, const struct wb_curve *curve,

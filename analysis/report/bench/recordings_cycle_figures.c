@@ -78,9 +78,9 @@ static void add_residuals(struct wb_panel *panel, const struct wb_cycle_member *
                           const struct wb_cycle_fit *fit, struct wb_colour colour)
 {
     const int most = member->data.n_points;
-    double *const x = columns_of(5, most), *const measured = x + most,
-                  *const computed = x + 2 * most;
-    double *const off_x = x + 3 * most, *const off = x + 4 * most;
+    double *const x = columns_of(3, most), *const measured = x + most;
+    double *const computed = x + 2 * most;
+    struct wb_figures_points points = {0}, off = {0};
     const struct wb_figure_style ways[2] = {
         {.colour = colour, .width = 0.9, .marker = WB_MARKER_CIRCLE, .marker_size = 2.2},
         {.colour = colour, .width = 0.7, .marker = WB_MARKER_RING, .marker_size = 2.6}};
@@ -88,22 +88,17 @@ static void add_residuals(struct wb_panel *panel, const struct wb_cycle_member *
         .colour = wb_palette_warning(), .marker = WB_MARKER_DIAMOND, .marker_size = 5.0};
     const double limit = outlier_limit(member, fit) / WB_MN;
     const double percent = 100.0 * WB_MN / member->data.max_force;
-    int n_off = 0;
     for (int k = 0; k < 2; k++) {
         const int n = wb_figures_cycle_points(member, fit, k == 1, x, measured, computed);
         for (int i = 0; i < n; i++) {
             const double residual = computed[i] - measured[i];
-            measured[i] = percent * residual;
-            if (!(fabs(residual) > limit))
-                continue;
-            off_x[n_off] = x[i];
-            off[n_off++] = measured[i];
+            wb_figures_add_point(&points, x[i], percent * residual);
+            if (fabs(residual) > limit)
+                wb_figures_add_point(&off, x[i], percent * residual);
         }
-        if (n > 0)
-            wb_figure_add_line(panel, NULL, (size_t)n, x, measured, &ways[k]);
+        wb_figures_put_points(panel, NULL, &points, &ways[k]);
     }
-    if (n_off > 0)
-        wb_figure_add_line(panel, "outliers", (size_t)n_off, off_x, off, &outliers);
+    wb_figures_put_points(panel, "outliers", &off, &outliers);
     free(x);
 }
 
@@ -389,23 +384,18 @@ static void add_cloud(struct wb_panel *panel, const struct wb_recordings_cycle *
     bool is_named = false;
     for (int i = 0; i < cycle->calibration.n_members; i++) {
         const struct wb_moment_cloud *const cloud = &cycle->clouds[i];
-        double *const x = columns_of(2, cloud->n), *const y = x + cloud->n;
-        int n = 0;
+        struct wb_figures_points points = {0};
         for (int k = 0; k < cloud->n; k++) {
             const struct wb_moment_point *const point = &cloud->points[k];
-            if (point->is_unloading || point->is_band)
-                continue;
-            x[n] = point->curvature;
-            y[n++] = point->moment / WB_NMM;
+            if (!point->is_unloading && !point->is_band)
+                wb_figures_add_point(&points, point->curvature, point->moment / WB_NMM);
         }
         const struct wb_figure_style dots = {.colour = wb_palette_fade(wb_palette_grey(), 0.75),
                                              .marker = WB_MARKER_CIRCLE,
                                              .marker_size = 2.4};
-        if (n > 0)
-            wb_figure_add_line(panel, is_named ? NULL : "shape and tension", (size_t)n, x, y,
-                               &dots);
-        is_named |= n > 0;
-        free(x);
+        const char *const label = is_named ? NULL : "shape and tension";
+        is_named |= points.n > 0;
+        wb_figures_put_points(panel, label, &points, &dots);
     }
 }
 
@@ -545,18 +535,16 @@ static enum wb_status add_region(struct wb_panel *panel, const struct wb_cycle_v
     WB_TRY(wb_contour_create(&contour, n_faces, faces, &levels));
     for (int i = 0; i < contour.n_loops; i++) {
         const struct wb_contour_loop *const loop = &contour.loops[i];
-        double *const x = columns_of(2, loop->n + 1), *const y = x + loop->n + 1;
+        struct wb_figures_points points = {0};
+        if (loop->level != 1)
+            continue;
         for (int k = 0; k <= loop->n; k++) {
-            x[k] = contour.points[loop->first + k % loop->n][0];
-            y[k] = contour.points[loop->first + k % loop->n][1];
-            if (!is_stress)
-                y[k] /= pow(WB_BENDING_PLASTIC_STRAIN, x[k]);
+            const double *const at = contour.points[loop->first + k % loop->n];
+            wb_figures_add_point(
+                &points, at[0], is_stress ? at[1] : at[1] / pow(WB_BENDING_PLASTIC_STRAIN, at[0]));
         }
-        if (loop->level == 1) {
-            wb_figure_add_line(panel, label, (size_t)loop->n + 1, x, y, &line);
-            label = NULL;
-        }
-        free(x);
+        wb_figures_put_points(panel, label, &points, &line);
+        label = NULL;
     }
     wb_contour_release(&contour);
     return WB_OK;
@@ -576,21 +564,22 @@ static enum wb_status add_pairs(struct wb_panel *panel, struct wb_figures_item *
     const struct wb_cycle_valley *const valley = &wire->cycle.valley;
     wb_figure_set_axes(panel, "Hardening exponent <i>n</i>", "Strength coefficient <i>K</i> (MPa)");
     WB_TRY(add_region(panel, valley, false, "indistinguishable"));
-    const double n = valley->best.hardening_exponent;
-    const double K = valley->best.strength_coefficient / WB_MPA;
+    struct wb_figures_points point = {0};
     const struct wb_figure_style best = {
         .colour = wb_palette_warning(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
-    wb_figure_add_line(panel, "best", 1, &n, &K, &best);
+    wb_figures_add_point(&point, valley->best.hardening_exponent,
+                         valley->best.strength_coefficient / WB_MPA);
+    wb_figures_put_points(panel, "best", &point, &best);
     if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))
         return WB_OK;
     const double paper_n = wire->calibration.material.hardening_exponent;
     const double paper_K = wire->calibration.material.strength_coefficient;
     if (is_near(paper_n, valley->exponent_low, valley->exponent_high) &&
         is_near(paper_K, valley->strength_low, valley->strength_high)) {
-        const double in_MPa = paper_K / WB_MPA;
         const struct wb_figure_style ring = {
             .colour = wb_palette_grey(), .marker = WB_MARKER_RING, .marker_size = 6.0};
-        wb_figure_add_line(panel, "paper's route, all samples", 1, &paper_n, &in_MPa, &ring);
+        wb_figures_add_point(&point, paper_n, paper_K / WB_MPA);
+        wb_figures_put_points(panel, "paper's route, all samples", &point, &ring);
     } else {
         wb_text_append(&item->caption,
                        " The paper's route, with all samples, ended far outside, at <i>K</i> = "

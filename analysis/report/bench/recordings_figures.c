@@ -2,13 +2,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
-#include "base/memory.h"
 #include "base/units.h"
 
 /* --- what they share --- */
@@ -95,10 +93,8 @@ static void find_frame(const struct wb_dataset *dataset, double deflection, stru
 static void add_rows(struct wb_panel *panel, const char *label, const struct wb_dataset *dataset,
                      int cycle, bool loading_only, const struct wb_figure_style *style)
 {
-    double *const x = wb_memory_new(dataset->n_rows, sizeof *x);
-    double *const y = wb_memory_new(dataset->n_rows, sizeof *y);
+    struct wb_figures_points line = {0};
     const double longest = wb_dataset_gap(dataset);
-    size_t n = 0;
     double last = (double)NAN;
     for (size_t i = 0; i < dataset->n_rows; i++) {
         const struct wb_row *const row = &dataset->rows[i];
@@ -109,14 +105,11 @@ static void add_rows(struct wb_panel *panel, const char *label, const struct wb_
             (row->phase == WB_PHASE_LOAD || (!loading_only && row->phase == WB_PHASE_UNLOAD));
         /* A gap in time is a gap in the line. */
         const bool gap = isfinite(last) && row->t - last > longest;
-        x[n] = row->deflection / WB_MM;
-        y[n++] = shown && !gap ? row->force / WB_MN : (double)NAN;
+        wb_figures_add_point(&line, row->deflection / WB_MM,
+                             shown && !gap ? row->force / WB_MN : (double)NAN);
         last = row->t;
     }
-    if (n > 0)
-        wb_figure_add_line(panel, label, n, x, y, style);
-    free(x);
-    free(y);
+    wb_figures_put_points(panel, label, &line, style);
 }
 
 /* --- the paper's Fig. 9 --- */
@@ -501,40 +494,36 @@ static enum wb_status draw_error(struct wb_figures_item *item)
 static void add_path(struct wb_figure *figure, const struct wb_calibrate_result *result,
                      struct wb_colour colour)
 {
-    const size_t n = (size_t)result->n_path;
-    double *const step = wb_memory_new(4 * n, sizeof *step), *const error = step + n;
-    double *const k = step + 2 * n, *const exponent = step + 3 * n;
-    for (size_t i = 0; i < n; i++) {
-        step[i] = (double)(i + 1);
-        error[i] = result->path[i].error;
-        k[i] = result->path[i].strength_coefficient / WB_MPA;
-        exponent[i] = result->path[i].hardening_exponent;
+    struct wb_figures_points errors = {0}, pairs = {0};
+    for (int i = 0; i < result->n_path; i++) {
+        wb_figures_add_point(&errors, i + 1, result->path[i].error);
+        wb_figures_add_point(&pairs, result->path[i].hardening_exponent,
+                             result->path[i].strength_coefficient / WB_MPA);
     }
-    struct wb_panel *const errors = wb_figure_add_panel(figure);
-    wb_figure_set_axes(errors, "Iteration",
+    struct wb_panel *const left = wb_figure_add_panel(figure);
+    wb_figure_set_axes(left, "Iteration",
                        "<i>E</i><sub>L2</sub> / (<i>F</i><sub>max</sub> "
                        "\xce\xb4<sub>max</sub><sup>1/2</sup>)");
-    wb_figure_set_logarithmic_y(errors);
+    wb_figure_set_logarithmic_y(left);
     const struct wb_figure_style line = {.colour = colour, .width = 1.3};
-    wb_figure_add_line(errors, NULL, n, step, error, &line);
+    wb_figures_put_points(left, NULL, &errors, &line);
 
-    struct wb_panel *const path = wb_figure_add_panel(figure);
-    wb_figure_set_axes(path, "Hardening exponent <i>n</i>", "Strength coefficient <i>K</i> (MPa)");
+    struct wb_panel *const right = wb_figure_add_panel(figure);
+    wb_figure_set_axes(right, "Hardening exponent <i>n</i>", "Strength coefficient <i>K</i> (MPa)");
     const struct wb_figure_style thin = {
         .colour = colour, .width = 0.8, .marker = WB_MARKER_CIRCLE, .marker_size = 2.4};
-    wb_figure_add_line(path, "best so far", n, exponent, k, &thin);
-    const double first_n = result->first_hardening_exponent;
-    const double first_k = result->first_strength_coefficient / WB_MPA;
+    wb_figures_put_points(right, "best so far", &pairs, &thin);
     const struct wb_figure_style start = {
         .colour = wb_palette_grey(), .marker = WB_MARKER_RING, .marker_size = 6.0};
-    wb_figure_add_line(path, "<i>n</i><sub>0</sub>, <i>K</i><sub>0</sub> (eqs. 15, 16)", 1,
-                       &first_n, &first_k, &start);
-    const double last_n = result->material.hardening_exponent;
-    const double last_k = result->material.strength_coefficient / WB_MPA;
+    wb_figures_add_point(&pairs, result->first_hardening_exponent,
+                         result->first_strength_coefficient / WB_MPA);
+    wb_figures_put_points(right, "<i>n</i><sub>0</sub>, <i>K</i><sub>0</sub> (eqs. 15, 16)", &pairs,
+                          &start);
     const struct wb_figure_style end = {
         .colour = wb_palette_ink(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.0};
-    wb_figure_add_line(path, "calibrated", 1, &last_n, &last_k, &end);
-    free(step);
+    wb_figures_add_point(&pairs, result->material.hardening_exponent,
+                         result->material.strength_coefficient / WB_MPA);
+    wb_figures_put_points(right, "calibrated", &pairs, &end);
 }
 
 static enum wb_status draw_optimiser(struct wb_figures_item *item)
@@ -570,18 +559,12 @@ static void add_overview(struct wb_panel *panel, const struct wb_recordings_resu
     snprintf(label, sizeof label, "%s, measured", results->wires[index].wanted->label);
     wb_figures_add_range(panel, NULL, curve, colour);
     /* Every tenth point carries a marker, so that wires differ without their colours. */
-    double *const x = wb_figures_deflections(curve);
-    double *const y = wb_figures_scaled(curve->force, curve->n, WB_MN);
-    int n = 0;
-    for (int i = 0; i < curve->n; i += 10, n++) {
-        x[n] = x[i];
-        y[n] = y[i];
-    }
-    const struct wb_figure_style points = {
+    struct wb_figures_points points = {0};
+    for (int i = 0; i < curve->n; i += 10)
+        wb_figures_add_point(&points, i * curve->step / WB_MM, curve->force[i] / WB_MN);
+    const struct wb_figure_style style = {
         .colour = colour, .marker = markers[index % 4], .marker_size = 4.2};
-    wb_figure_add_line(panel, label, (size_t)n, x, y, &points);
-    free(x);
-    free(y);
+    wb_figures_put_points(panel, label, &points, &style);
     snprintf(label, sizeof label, "%s, computed", results->wires[index].wanted->label);
     const struct wb_figure_style line = {.colour = colour, .width = 1.3};
     wb_figures_add_curve(panel, label, curve, result->elastoplastic.force, WB_MN, &line);
