@@ -135,6 +135,11 @@ void wb_figures_put_points(struct wb_panel *panel, const char *label,
 {
     if (points->n > 0)
         wb_figure_add_line(panel, label, points->n, points->x, points->y, style);
+    wb_figures_release_points(points);
+}
+
+void wb_figures_release_points(struct wb_figures_points *points)
+{
     free(points->x);
     free(points->y);
     *points = (struct wb_figures_points){0};

@@ -84,6 +84,7 @@ void wb_figures_add_point(struct wb_figures_points *points, double x, double y);
 /* Adds them to a panel, unless there are none, and empties the series. */
 void wb_figures_put_points(struct wb_panel *panel, const char *label,
                            struct wb_figures_points *points, const struct wb_figure_style *style);
+void wb_figures_release_points(struct wb_figures_points *points);
 
 /* Copies in another unit; for free(). */
 double *wb_figures_scaled(const double *values, int n, double unit);

@@ -24,14 +24,10 @@ enum {
     DRAWN = 8
 };
 
-struct output {
-    char name[128]; /* relative to the report's folder */
-    struct wb_text bytes;
-};
-
+/* The files of a report, of which its cards are some. */
 struct outputs {
     int n;
-    struct output *items;
+    struct wb_cards_file *items;
 };
 
 /* --- drawing --- */
@@ -39,7 +35,7 @@ struct outputs {
 static struct wb_text *add_output(struct outputs *outputs, const char *folder, const char *name,
                                   const char *ending)
 {
-    struct output *const output = &outputs->items[outputs->n++];
+    struct wb_cards_file *const output = &outputs->items[outputs->n++];
     snprintf(output->name, sizeof output->name, "%s%s.%s", folder, name, ending);
     return &output->bytes;
 }
@@ -114,17 +110,12 @@ static enum wb_status draw(struct outputs *outputs, const struct wb_document *do
     WB_TRY(wb_html_render(document, add_output(outputs, "", "report", "html")));
     WB_TRY(draw_figures(outputs, figures, n_threads));
     for (int i = 0; i < cards->n; i++) {
-        struct output *const output = &outputs->items[outputs->n++];
+        struct wb_cards_file *const output = &outputs->items[outputs->n++];
         snprintf(output->name, sizeof output->name, "%s", cards->files[i].name);
         wb_text_append_bytes(&output->bytes, cards->files[i].bytes.bytes,
                              cards->files[i].bytes.length);
     }
-    WB_TRY(draw_json(outputs, numbers));
-    for (int i = 0; i < outputs->n; i++) {
-        if (outputs->items[i].bytes.failed)
-            return wb_fail(WB_ERR_MEMORY, "out of memory writing the report");
-    }
-    return WB_OK;
+    return draw_json(outputs, numbers);
 }
 
 static void release(struct outputs *outputs)
@@ -183,9 +174,8 @@ static enum wb_status write_all(const struct outputs *outputs, const char *folde
     char path[WB_PATH];
     WB_TRY(make_folders(outputs, folder));
     for (int i = 0; i < outputs->n; i++) {
-        const struct output *const output = &outputs->items[i];
-        WB_TRY(wb_file_join(path, folder, output->name));
-        WB_TRY(wb_file_write(path, wb_text_string(&output->bytes), output->bytes.length));
+        WB_TRY(wb_file_join(path, folder, outputs->items[i].name));
+        WB_TRY(wb_file_write_text(path, &outputs->items[i].bytes));
     }
     return WB_OK;
 }

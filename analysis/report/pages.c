@@ -126,25 +126,17 @@ static char *format_text(const char *format, va_list arguments)
 char *wb_pages_escape(char *buffer, size_t size, const char *raw)
 {
     struct wb_text text = {0};
-    wb_text_append_escaped(&text, raw);
-    size_t length = strlen(wb_text_string(&text));
-    if (length >= size) {
-        length = size - 1;
-        /* Not within an entity, and not within a character of several bytes. */
-        const char *const string = wb_text_string(&text);
-        for (size_t back = 0; back < 7 && back < length; back++) {
-            if (string[length - 1 - back] == ';')
-                break;
-            if (string[length - 1 - back] == '&') {
-                length -= back + 1;
-                break;
-            }
-        }
-        while (length > 0 && ((unsigned char)string[length] & 0xc0) == 0x80)
-            length--;
+    size_t fits = 0; /* bytes of the characters before the last one */
+    for (; *raw && text.length < size; raw++) {
+        const bool begins_character = ((unsigned char)*raw & 0xc0) != 0x80;
+        if (begins_character)
+            fits = text.length;
+        wb_text_append_escaped(&text, (const char[2]){*raw, '\0'});
     }
-    memcpy(buffer, wb_text_string(&text), length);
-    buffer[length] = '\0';
+    if (text.length < size)
+        fits = text.length;
+    memcpy(buffer, wb_text_string(&text), fits);
+    buffer[fits] = '\0';
     wb_text_release(&text);
     return buffer;
 }

@@ -257,47 +257,57 @@ static void set_round_range(struct wb_panel *panel, double low, double high)
                           step * ceil((high + 0.02 * span) / step));
 }
 
-/* A row of the forest, in N mm2. */
-struct tree {
-    char name[32];
-    double value, range[2]; /* NaN: none */
-    struct wb_figure_style dot, line;
+/* Values with their ranges (N mm2), each in a row; the first stands at the bottom. */
+struct forest {
+    struct wb_panel *panel;
+    int n;
+    char names[MOST_ROWS][32];
+    double low, high; /* of all */
 };
+
+/* `value` NaN: only the range is drawn; a range that is not known is not drawn. */
+static void add_tree(struct forest *forest, double value, const double range[2],
+                     const struct wb_figure_style *dot, struct wb_colour colour, double width)
+{
+    const double y = forest->n++, ys[2] = {y, y};
+    const struct wb_figure_style line = {.colour = colour, .width = width};
+    /* NaN is neither end. */
+    forest->low = fmin(forest->low, fmin(value, range[0]));
+    forest->high = fmax(forest->high, fmax(value, range[1]));
+    if (isfinite(range[0]))
+        wb_figure_add_line(forest->panel, NULL, 2, range, ys, &line);
+    if (isfinite(value))
+        wb_figure_add_line(forest->panel, NULL, 1, &value, &y, dot);
+}
 
 /* From the bottom up: the range over laws, the mean unless no law fits the data, then the
  * samples from the last on. */
-static int plant(const struct wb_recordings_cycle *cycle, struct wb_colour colour,
-                 struct tree trees[MOST_ROWS])
+static void plant(struct forest *forest, const struct wb_recordings_cycle *cycle,
+                  struct wb_colour colour)
 {
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     const struct wb_estimate *const EI = &c->rigidity;
-    const struct wb_figure_style thin = {.colour = wb_palette_grey(), .width = 1.0};
-    const struct wb_figure_style interval = {.colour = wb_palette_ink(), .width = 1.4};
     const struct wb_figure_style dot = {
         .colour = colour, .marker = WB_MARKER_CIRCLE, .marker_size = 5.0};
     const struct wb_figure_style mean = {
         .colour = wb_palette_ink(), .marker = WB_MARKER_DIAMOND, .marker_size = 6.5};
-    int n = 0;
-    trees[n++] = (struct tree){"over laws",
-                               (double)NAN,
-                               {EI->candidates_low / WB_NMM2, EI->candidates_high / WB_NMM2},
-                               dot,
-                               thin};
-    if (!wb_recordings_cycle_is_refuted(cycle))
-        trees[n++] = (struct tree){
-            "mean", EI->value / WB_NMM2, {EI->low / WB_NMM2, EI->high / WB_NMM2}, mean, interval};
-    const int first = n;
-    for (int i = c->n_members - 1; i >= 0; i--) {
-        const struct wb_cycle_member *const member = &c->members[i];
-        if (i >= MOST_ROWS - first)
-            continue;
-        struct tree *const tree = &trees[n++];
-        *tree = (struct tree){.dot = dot, .line = thin};
-        snprintf(tree->name, sizeof tree->name, "sample %d", member->sample);
-        tree->value = member->answers[c->chosen].value[WB_CYCLE_RIGIDITY] / WB_NMM2;
-        range_of(c, member, tree->range);
+    const double over_laws[2] = {EI->candidates_low / WB_NMM2, EI->candidates_high / WB_NMM2};
+    const double interval[2] = {EI->low / WB_NMM2, EI->high / WB_NMM2};
+    snprintf(forest->names[0], sizeof forest->names[0], "over laws");
+    add_tree(forest, (double)NAN, over_laws, &dot, wb_palette_grey(), 1.0);
+    if (!wb_recordings_cycle_is_refuted(cycle)) {
+        snprintf(forest->names[1], sizeof forest->names[1], "mean");
+        add_tree(forest, EI->value / WB_NMM2, interval, &mean, wb_palette_ink(), 1.4);
     }
-    return n;
+    const int most = MOST_ROWS - forest->n;
+    for (int i = (c->n_members < most ? c->n_members : most) - 1; i >= 0; i--) {
+        const struct wb_cycle_member *const member = &c->members[i];
+        double range[2];
+        range_of(c, member, range);
+        snprintf(forest->names[forest->n], sizeof forest->names[0], "sample %d", member->sample);
+        add_tree(forest, member->answers[c->chosen].value[WB_CYCLE_RIGIDITY] / WB_NMM2, range, &dot,
+                 wb_palette_grey(), 1.0);
+    }
 }
 
 enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item)
@@ -312,27 +322,15 @@ enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item)
         "range. Below them %sthe range of the mean over the laws.",
         measured_of(item),
         wb_recordings_cycle_is_refuted(cycle) ? "" : "the mean with its interval of 95 %, and ");
-    struct wb_panel *const panel = wb_figure_add_panel(item->figure);
-    wb_figure_set_axes(panel, "<i>EI</i> (N mm\xc2\xb2)", "");
-    struct tree trees[MOST_ROWS];
+    struct forest forest = {.panel = wb_figure_add_panel(item->figure), .low = (double)INFINITY};
     const char *names[MOST_ROWS];
-    const int n = plant(cycle, wb_palette_wire(item->index), trees);
-    double ends[2] = {(double)INFINITY, 0.0};
-    for (int i = 0; i < n; i++) {
-        const struct tree *const tree = &trees[i];
-        const double y = i, ys[2] = {y, y};
-        names[i] = tree->name;
-        /* NaN is neither end. */
-        ends[0] = fmin(ends[0], fmin(tree->value, tree->range[0]));
-        ends[1] = fmax(ends[1], fmax(tree->value, tree->range[1]));
-        if (isfinite(tree->range[0]))
-            wb_figure_add_line(panel, NULL, 2, tree->range, ys, &tree->line);
-        if (isfinite(tree->value))
-            wb_figure_add_line(panel, NULL, 1, &tree->value, &y, &tree->dot);
-    }
-    set_round_range(panel, ends[0], ends[1]);
-    wb_figure_set_y_names(panel, n, names);
-    wb_figure_set_y_range(panel, -0.6, n - 0.4);
+    wb_figure_set_axes(forest.panel, "<i>EI</i> (N mm\xc2\xb2)", "");
+    plant(&forest, cycle, wb_palette_wire(item->index));
+    for (int i = 0; i < forest.n; i++)
+        names[i] = forest.names[i];
+    set_round_range(forest.panel, forest.low, forest.high);
+    wb_figure_set_y_names(forest.panel, forest.n, names);
+    wb_figure_set_y_range(forest.panel, -0.6, forest.n - 0.4);
     return WB_OK;
 }
 
@@ -344,34 +342,32 @@ static void add_cloud_band(struct wb_panel *panel, const struct wb_recordings_cy
 {
     double low[BANDS], high[BANDS], x[BANDS], end = 0.0;
     const double *const edges[2] = {low, high};
+    struct wb_figures_points points = {0};
     int n = 0;
-    for (int pass = 0; pass < 2; pass++) {
-        for (int k = 0; k < BANDS && pass == 1; k++) {
-            low[k] = (double)INFINITY;
-            high[k] = -(double)INFINITY;
-        }
-        for (int i = 0; i < cycle->calibration.n_members; i++) {
-            for (int k = 0; k < cycle->clouds[i].n; k++) {
-                const struct wb_moment_point *const point = &cycle->clouds[i].points[k];
-                if (point->is_unloading || !point->is_band || !(point->curvature > 0.0))
-                    continue;
-                if (pass == 0) {
-                    end = fmax(end, point->curvature);
-                    continue;
-                }
-                const int at = (int)fmin(BANDS - 1, BANDS * point->curvature / end);
-                low[at] = fmin(low[at], point->moment / WB_NMM);
-                high[at] = fmax(high[at], point->moment / WB_NMM);
-            }
+    for (int i = 0; i < cycle->calibration.n_members; i++) {
+        for (int k = 0; k < cycle->clouds[i].n; k++) {
+            const struct wb_moment_point *const point = &cycle->clouds[i].points[k];
+            if (point->is_unloading || !point->is_band || !(point->curvature > 0.0))
+                continue;
+            wb_figures_add_point(&points, point->curvature, point->moment / WB_NMM);
+            end = fmax(end, point->curvature);
         }
     }
     for (int k = 0; k < BANDS; k++) {
+        low[k] = high[k] = (double)NAN;
+        for (size_t i = 0; i < points.n; i++) {
+            if ((int)fmin(BANDS - 1, BANDS * points.x[i] / end) != k)
+                continue;
+            low[k] = fmin(low[k], points.y[i]);
+            high[k] = fmax(high[k], points.y[i]);
+        }
         if (!(high[k] > low[k]))
             continue;
         x[n] = (k + 0.5) * end / BANDS;
         low[n] = low[k];
         high[n++] = high[k];
     }
+    wb_figures_release_points(&points);
     if (n > 1)
         wb_figure_add_band(panel, NULL, (size_t)n, x, edges,
                            wb_palette_fade(wb_palette_grey(), 0.35));

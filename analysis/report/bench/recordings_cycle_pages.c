@@ -246,38 +246,36 @@ static void put_moments(struct wb_document *document, const struct wb_recordings
 
 /* --- the other length --- */
 
-static void put_prediction_of(struct wb_document_table *table,
-                              const struct wb_recordings_results_wire *wire)
+/* In its unit; NaN where there is none. */
+static double score_of(const struct wb_validate_result *of, const struct wb_recordings_score *row)
 {
-    const struct wb_validate_result *const p = wb_recordings_results_prediction(wire);
-    wb_pages_row(table, false, wire->wanted->label);
-    if (!p) {
-        wb_pages_cell(table, WB_TONE_WARNING, "missing");
-        return;
-    }
-    const bool has_back = p->cycles.n_samples > 0;
-    wb_pages_cell_number(table, 100.0 * p->elastoplastic.rms, 2);
-    wb_pages_cell_number(table, 100.0 * p->bounds[WB_VALIDATE_LOADING].bound, 2);
-    wb_pages_cell_number(table, has_back ? 100.0 * p->cycles.rms : (double)NAN, 2);
-    wb_pages_cell_number(table, has_back ? p->cycles.residual_measured / WB_MM : (double)NAN, 1);
-    wb_pages_cell_number(table, has_back ? p->cycles.residual_computed / WB_MM : (double)NAN, 1);
-    wb_pages_cell_number(table, p->shape_rms / WB_MM, 2);
-    wb_pages_cell_number(table, p->curve.max_force / WB_MN, 1);
+    double value = (double)NAN;
+    if (of && !(row->needs_scatter && of->curve.n_samples < 2) &&
+        !(row->needs_unloading && of->cycles.n_samples == 0))
+        memcpy(&value, (const char *)of + row->offset, sizeof value);
+    return value / row->in_unit;
 }
+
+#define OF(member) offsetof(struct wb_validate_result, member)
 
 static void put_predictions(struct wb_document *document,
                             const struct wb_recordings_results *results)
 {
-    static const struct wb_document_column columns[] = {
-        {"Wire"},
-        {.heading = "Loading, RMS (%)", .right = true, .wraps = true},
-        {.heading = "bound (%)", .right = true, .wraps = true},
-        {.heading = "Unloading, RMS (%)", .right = true, .wraps = true},
-        {.heading = "Residual deflection, measured (mm)", .right = true, .wraps = true},
-        {.heading = "Residual deflection, predicted (mm)", .right = true, .wraps = true},
-        {.heading = "Shapes, RMS (mm)", .right = true, .wraps = true},
-        {.heading = "<i>F</i><sub>max</sub> (mN)", .right = true, .wraps = true},
+    static const struct wb_recordings_score scores[] = {
+        {"Loading, RMS (%)", "", OF(elastoplastic.rms), WB_PERCENT, 2},
+        {"bound (%)", "", OF(bounds[WB_VALIDATE_LOADING].bound), WB_PERCENT, 2},
+        {"Unloading, RMS (%)", "", OF(cycles.rms), WB_PERCENT, 2, .needs_unloading = true},
+        {"Residual deflection, measured (mm)", "", OF(cycles.residual_measured), WB_MM, 1,
+         .needs_unloading = true},
+        {"Residual deflection, predicted (mm)", "", OF(cycles.residual_computed), WB_MM, 1,
+         .needs_unloading = true},
+        {"Shapes, RMS (mm)", "", OF(shape_rms), WB_MM, 2},
+        {"<i>F</i><sub>max</sub> (mN)", "", OF(curve.max_force), WB_MN, 1},
     };
+    struct wb_document_column columns[1 + WB_COUNT(scores)] = {{"Wire"}};
+    for (size_t k = 0; k < WB_COUNT(scores); k++)
+        columns[1 + k] =
+            (struct wb_document_column){.heading = scores[k].name, .right = true, .wraps = true};
     const double *const length = results->campaign->length;
     wb_document_heading(document, 2, "prediction", "How well another length is predicted");
     struct wb_document_table *const table = wb_pages_table(
@@ -287,8 +285,15 @@ static void put_predictions(struct wb_document *document,
         "twenty validations of a right law, because specimens differ. Residual deflection: where "
         "the force during unloading has come down to that at zero deflection.",
         length[WB_RECORDINGS_VALIDATION] / WB_MM, length[WB_RECORDINGS_CALIBRATION] / WB_MM);
-    for (int i = 0; i < results->n_wires; i++)
-        put_prediction_of(table, &results->wires[i]);
+    for (int i = 0; i < results->n_wires; i++) {
+        const struct wb_recordings_results_wire *const wire = &results->wires[i];
+        const struct wb_validate_result *const p = wb_recordings_results_prediction(wire);
+        wb_pages_row(table, false, wire->wanted->label);
+        if (!p)
+            wb_pages_cell(table, WB_TONE_WARNING, "missing");
+        for (size_t k = 0; p && k < WB_COUNT(scores); k++)
+            wb_pages_cell_number(table, score_of(p, &scores[k]), scores[k].decimals);
+    }
 }
 
 void wb_recordings_cycle_put_score(struct wb_document_table *table, const char *name,
@@ -306,16 +311,8 @@ void wb_recordings_cycle_put_scores(struct wb_document_table *table,
                                     const struct wb_validate_result *const results[2])
 {
     for (size_t k = 0; k < n; k++) {
-        const struct wb_recordings_score *const row = &rows[k];
-        double values[2] = {(double)NAN, (double)NAN};
-        for (int i = 0; i < 2; i++) {
-            const struct wb_validate_result *const of = results[i];
-            if (of && !(row->needs_scatter && of->curve.n_samples < 2) &&
-                !(row->needs_unloading && of->cycles.n_samples == 0))
-                memcpy(&values[i], (const char *)of + row->offset, sizeof values[i]);
-            values[i] /= row->in_unit;
-        }
-        wb_recordings_cycle_put_score(table, row->name, row->unit, values, row->decimals);
+        const double values[2] = {score_of(results[0], &rows[k]), score_of(results[1], &rows[k])};
+        wb_recordings_cycle_put_score(table, rows[k].name, rows[k].unit, values, rows[k].decimals);
     }
 }
 
@@ -357,7 +354,6 @@ static void put_bounds(struct wb_document *document, const struct wb_validate_re
 }
 
 #define PART "% of <i>F</i><sub>max</sub>"
-#define OF(member) offsetof(struct wb_validate_result, member)
 
 static void put_scores(struct wb_document *document, const struct wb_recordings_results_wire *wire)
 {
