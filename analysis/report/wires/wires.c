@@ -6,8 +6,6 @@
 #include <string.h>
 
 #include "analysis/dataset/simulated.h"
-#include "analysis/report/campaign.h"
-#include "base/config.h"
 #include "base/memory.h"
 #include "base/units.h"
 
@@ -16,17 +14,12 @@ const char *wb_wires_command(enum wb_wires_solver solver)
     return solver == WB_WIRES_SOLID ? "wire3d" : "wire1d";
 }
 
-/* --- cases --- */
-
-static enum wb_status read_model(const struct wb_wires *comparison,
-                                 const struct wb_config_node *node, const char *name,
-                                 struct wb_wires_case *item, char path[WB_PATH])
+double wb_wires_force(const struct wb_wire_model *model)
 {
-    WB_TRY(
-        wb_campaign_find(&comparison->head, node, "model", "models", name, path, item->model_name));
-    item->model = wb_memory_new(1, sizeof *item->model);
-    return wb_wire_model_read(item->model, path);
+    return model->step[model->n_steps - 1].loads.follower[1];
 }
+
+/* --- cases --- */
 
 /* A dataset with the command that makes it. */
 static enum wb_status want(const struct wb_wires *comparison, const char *given,
@@ -48,23 +41,27 @@ static enum wb_status read_case(const struct wb_wires *comparison,
                                 const struct wb_config_node *node, bool has_rod,
                                 struct wb_wires_case *item)
 {
-    char model[256], solid[256] = "", rod[256] = "", path[WB_PATH];
+    static const char *const endings[WB_WIRES_SOLVERS] = {"3d", "1d"};
+    char model[256], given[WB_WIRES_SOLVERS][256] = {"", ""}, path[WB_PATH];
     const struct wb_config_key keys[] = {
         WB_CONFIG_OPTIONAL_TEXT("label", item->label),
         WB_CONFIG_TEXT("model", model),
-        WB_CONFIG_OPTIONAL_TEXT("solid", solid),
-        WB_CONFIG_OPTIONAL_TEXT("rod", rod),
+        WB_CONFIG_OPTIONAL_TEXT("solid", given[WB_WIRES_SOLID]),
+        WB_CONFIG_OPTIONAL_TEXT("rod", given[WB_WIRES_ROD]),
     };
     WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
-    WB_TRY(read_model(comparison, node, model, item, path));
-    if (!solid[0])
-        snprintf(solid, sizeof solid, "%.240s-3d", item->model->name);
-    WB_TRY(want(comparison, solid, WB_WIRES_SOLID, path, item));
-    if (!has_rod && rod[0])
+    WB_TRY(wb_campaign_find(&comparison->head, node, "model", "models", model, path,
+                            item->model_name));
+    item->model = wb_memory_new(1, sizeof *item->model);
+    WB_TRY(wb_wire_model_read(item->model, path));
+    if (!has_rod && given[WB_WIRES_ROD][0])
         return wb_config_refuse(node, "rod", "a rod has no contact");
-    if (!rod[0])
-        snprintf(rod, sizeof rod, "%.240s-1d", item->model->name);
-    return has_rod ? want(comparison, rod, WB_WIRES_ROD, path, item) : WB_OK;
+    for (int k = 0; k < (has_rod ? WB_WIRES_SOLVERS : WB_WIRES_ROD); k++) {
+        if (!given[k][0])
+            snprintf(given[k], sizeof given[k], "%.240s-%s", item->model->name, endings[k]);
+        WB_TRY(want(comparison, given[k], k, path, item));
+    }
+    return WB_OK;
 }
 
 static bool is_loaded_by_follower(const struct wb_wire_model *model)
@@ -88,8 +85,7 @@ static enum wb_status check_case(const struct wb_config_node *node, const struct
         return wb_config_refuse(node, "model", "'%s' does not end under a follower force along y",
                                 model->name);
     if (fabs(model->length - first->length) > 1e-9 * first->length ||
-        model->step[model->n_steps - 1].loads.follower[1] !=
-            first->step[first->n_steps - 1].loads.follower[1])
+        wb_wires_force(model) != wb_wires_force(first))
         return wb_config_refuse(node, "model", "'%s' has another length or force than '%s'",
                                 model->name, first->name);
     return WB_OK;

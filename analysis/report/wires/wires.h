@@ -40,8 +40,6 @@
 
 #include "analysis/report/campaign.h"
 #include "analysis/report/simulation.h"
-#include "base/file.h"
-#include "base/hash.h"
 #include "base/status.h"
 #include "fe/model/wire.h"
 #include "fe/model/wire_model.h"
@@ -93,6 +91,9 @@ struct wb_wires {
 /* Reading and release, as wb_kind_keys and wb_kind_release have it. */
 WB_MUST_CHECK enum wb_status wb_wires_keys(void *context, const struct wb_config_node *root);
 void wb_wires_release(void *context);
+
+/* The follower force at the end of a model's last step, N. */
+double wb_wires_force(const struct wb_wire_model *model);
 
 /* Whether a material of the elastoplastic solid stands in for one that the paper lost. */
 bool wb_wires_has_substitutes(const struct wb_wires *comparison);

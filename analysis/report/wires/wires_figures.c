@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
@@ -14,8 +15,7 @@ static const double degrees = 180.0 / 3.14159265358979323846; /* degrees of a ra
 /* The follower force at the end, N. */
 static double force_of(const struct wb_wires_results *results)
 {
-    const struct wb_wire_model *const model = results->comparison->cases[WB_WIRES_ELASTIC].model;
-    return model->step[model->n_steps - 1].loads.follower[1];
+    return wb_wires_force(results->comparison->cases[WB_WIRES_ELASTIC].model);
 }
 
 /* " (the paper's Fig. N)", or "" of a campaign that has nothing of the paper's. */
@@ -219,12 +219,9 @@ static enum wb_status draw_loading(struct wb_figures_item *item)
     if (!solid && !rod)
         return WB_OK;
     WB_TRY(wb_figures_start_simulation(&item->figure, "loading", 200.0));
-    wb_text_append(&item->caption, "%s",
-                   results->printed.reached
-                       ? "Follower force against deflection and angle of the tip, "
-                         "simulated. As printed: with the paper's effective properties."
-                       : "Follower force against deflection and angle of the tip, "
-                         "simulated.");
+    wb_text_append(
+        &item->caption, "Follower force against deflection and angle of the tip, simulated.%s",
+        results->printed.reached ? " As printed: with the paper's effective properties." : "");
     struct wb_panel *panels[2];
     for (int i = 0; i < 2; i++)
         panels[i] = wb_figure_add_panel(item->figure);
@@ -461,82 +458,69 @@ static void ring(struct wb_panel *panel, double x, double y)
     wb_figure_add_line(panel, NULL, 1, &x, &y, &style);
 }
 
-static void add_cross_section(struct wb_figure *figure, const struct wb_field *field,
-                              struct wb_panel **panel)
+/* A panel without axes. */
+static struct wb_panel *add_drawing(struct wb_figure *figure, const char *title)
 {
-    char title[80];
-    *panel = wb_figure_add_panel(figure);
-    wb_figure_set_width(*panel, 104.0);
-    wb_figure_hide_axes(*panel);
-    wb_figure_set_equal_aspect(*panel);
-    snprintf(title, sizeof title, "Section at %.3g mm", field->x / WB_MM);
-    wb_figure_set_title(*panel, title);
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    wb_figure_hide_axes(panel);
+    wb_figure_set_equal_aspect(panel);
+    wb_figure_set_title(panel, title);
+    return panel;
 }
 
-static enum wb_status draw_stress(struct wb_figure **figure, const struct wb_wires_results *results,
-                                  int index)
+static void append_stress_caption(struct wb_figures_item *item, bool elastic)
 {
+    char in[48];
+    wb_text_append(
+        &item->caption,
+        elastic ? "Simulated wire of linear elastic materials under a follower force of %g N%s: "
+                  "von Mises stress on the longitudinal section as it is deformed, and on a cross "
+                  "section, seen from the clamp. Ring: the largest value."
+                : "The same wire of elastoplastic materials at %g N%s: von Mises stress, "
+                  "simulated. The colours have another scale than the elastic ones.",
+        force_of(item->results), figure_number(in, item->results, elastic ? "3a" : "3b"));
+}
+
+static enum wb_status draw_stress(struct wb_figures_item *item)
+{
+    const struct wb_wires_results *const results = item->results;
     const struct wb_wires *const comparison = results->comparison;
+    const bool elastic = strcmp(item->row->place, "elastic") == 0;
+    const int index = elastic ? WB_WIRES_ELASTIC : WB_WIRES_ELASTOPLASTIC;
     const struct wb_wires_run *const run = wb_wires_solid_run(results, index);
-    const struct wb_field *const along =
-        run ? wb_fields_find(&run->fields, comparison->loaded_state, (double)NAN) : NULL;
+    const struct wb_field *const along = wb_wires_field(run, comparison->loaded_state, (double)NAN);
     const struct wb_field *const across =
-        run ? wb_fields_find(&run->fields, comparison->loaded_state, comparison->section) : NULL;
+        wb_wires_field(run, comparison->loaded_state, comparison->section);
     if (!along)
         return WB_OK;
     const struct wb_wires_peak peak = wb_wires_find_peak(along, 0);
-    const bool elastic = index == WB_WIRES_ELASTIC;
     struct drawing drawing = {.view = FROM_THE_SIDE, .quantity = VON_MISES};
     drawing.colours = colours_of(
         VON_MISES, fmax(largest_of(along, 0, VON_MISES), largest_of(across, 0, VON_MISES)));
     /* A wire that curls up needs more height. */
-    const double low = fmin(run->tip[1], 0.0), high = fmax(run->tip[1], 0.0);
-    const double height =
-        elastic || high - low < 0.35 * comparison->cases[index].model->length ? 150.0 : 215.0;
-    WB_TRY(wb_figures_start_simulation(figure, elastic ? "stress-elastic" : "stress-elastoplastic",
-                                       height));
-    struct wb_panel *panel = wb_figure_add_panel(*figure);
+    const bool curls = fabs(run->tip[1]) >= 0.35 * comparison->cases[index].model->length;
+    WB_TRY(wb_figures_start_simulation(&item->figure,
+                                       elastic ? "stress-elastic" : "stress-elastoplastic",
+                                       elastic || !curls ? 150.0 : 215.0));
+    append_stress_caption(item, elastic);
+    struct wb_panel *panel = wb_figure_add_panel(item->figure);
     char title[200];
-    snprintf(title, sizeof title, "(%c) %s: largest %.0f MPa", elastic ? 'a' : 'b',
-             elastic ? "Linear elastic" : "Elastoplastic", peak.stress / WB_MPA);
+    snprintf(title, sizeof title, "%s: largest %.0f MPa",
+             elastic ? "(a) Linear elastic" : "(b) Elastoplastic", peak.stress / WB_MPA);
     wb_figure_set_title(panel, title);
     wb_figure_set_axes(panel, "<i>x</i> (mm)", "<i>y</i> (mm)");
     wb_figure_set_equal_aspect(panel);
     add_field(panel, along, &drawing);
     ring(panel, peak.position[0] / WB_MM, peak.position[1] / WB_MM);
     if (across) {
-        add_cross_section(*figure, across, &panel);
+        snprintf(title, sizeof title, "Section at %.3g mm", across->x / WB_MM);
+        panel = add_drawing(item->figure, title);
+        wb_figure_set_width(panel, 104.0);
         drawing.view = FROM_THE_CLAMP;
         add_field(panel, across, &drawing);
     }
-    wb_figure_add_colour_bar(*figure, &drawing.colours, "MPa");
+    wb_figure_add_colour_bar(item->figure, &drawing.colours, "MPa");
     return WB_OK;
-}
-
-static enum wb_status draw_elastic(struct wb_figures_item *item)
-{
-    const struct wb_wires_results *const results = item->results;
-    char in[48];
-    wb_text_append(
-        &item->caption,
-        "Simulated wire of linear elastic materials under a follower force of %g N%s: von "
-        "Mises "
-        "stress on the longitudinal section as it is deformed, and on a cross section, seen "
-        "from the clamp. Ring: the largest value.",
-        force_of(results), figure_number(in, results, "3a"));
-    return draw_stress(&item->figure, results, WB_WIRES_ELASTIC);
-}
-
-static enum wb_status draw_elastoplastic(struct wb_figures_item *item)
-{
-    const struct wb_wires_results *const results = item->results;
-    char in[48];
-    wb_text_append(
-        &item->caption,
-        "The same wire of elastoplastic materials at %g N%s: von Mises stress, simulated. "
-        "The colours have another scale than the elastic ones.",
-        force_of(results), figure_number(in, results, "3b"));
-    return draw_stress(&item->figure, results, WB_WIRES_ELASTOPLASTIC);
 }
 
 /* --- Fig. 5a --- */
@@ -550,13 +534,10 @@ static void add_pair(struct wb_figure *figure, const struct wb_field *const fiel
     drawing.colours = colours_of(
         quantity, fmax(largest_of(fields[0], 0, quantity), largest_of(fields[1], 0, quantity)));
     for (int i = 0; i < 2; i++) {
-        struct wb_panel *const panel = wb_figure_add_panel(figure);
         char title[120];
-        wb_figure_hide_axes(panel);
-        wb_figure_set_equal_aspect(panel);
         snprintf(title, sizeof title, "%s, %s", quantity == AXIAL ? "Axial" : "von Mises",
                  models[i]);
-        wb_figure_set_title(panel, title);
+        struct wb_panel *const panel = add_drawing(figure, title);
         drawing.cells = i == WB_WIRES_ROD;
         if (fields[i])
             add_part(panel, fields[i], 0, &drawing);
@@ -570,15 +551,13 @@ static enum wb_status draw_residual(struct wb_figures_item *item)
 {
     const struct wb_wires_results *const results = item->results;
     const struct wb_wires *const comparison = results->comparison;
-    const struct wb_field *fields[2] = {NULL, NULL};
+    const int at = WB_WIRES_RESIDUAL + item->index;
+    const struct wb_field *const fields[2] = {
+        wb_wires_field(wb_wires_solid_run(results, at), comparison->residual_state,
+                       comparison->section),
+        wb_wires_field(wb_wires_rod_run(results, at), comparison->residual_state,
+                       comparison->section)};
     char name[40];
-    for (int k = 0; k < 2; k++) {
-        const struct wb_wires_run *const run =
-            wb_wires_usable(results, WB_WIRES_RESIDUAL + item->index, (enum wb_wires_solver)k);
-        if (run)
-            fields[k] =
-                wb_fields_find(&run->fields, comparison->residual_state, comparison->section);
-    }
     if (!fields[0] && !fields[1])
         return WB_OK;
     snprintf(name, sizeof name, "residual-%d", item->index + 1);
@@ -590,8 +569,7 @@ static enum wb_status draw_residual(struct wb_figures_item *item)
         "%s%s: simulated residual stress in the core near the clamp, seen from it: axial "
         "stress, tension positive, and von Mises stress, of the solid and of the rod's "
         "fibres.",
-        wb_pages_escape(label, sizeof label,
-                        results->comparison->cases[WB_WIRES_RESIDUAL + item->index].label),
+        wb_pages_escape(label, sizeof label, comparison->cases[at].label),
         figure_number(in, results, "5a"));
     add_pair(item->figure, fields, AXIAL);
     add_pair(item->figure, fields, VON_MISES);
@@ -629,12 +607,9 @@ static void add_loaded(struct wb_figure *figure, const char *label, const struct
 {
     const struct drawing drawing = {
         .view = FROM_THE_SIDE, .quantity = VON_MISES, .colours = *colours};
-    struct wb_panel *const panel = wb_figure_add_panel(figure);
     char title[120];
     snprintf(title, sizeof title, "%s: %.0f MPa", label, largest_of(field, 0, VON_MISES));
-    wb_figure_set_title(panel, title);
-    wb_figure_hide_axes(panel);
-    wb_figure_set_equal_aspect(panel);
+    struct wb_panel *const panel = add_drawing(figure, title);
     wb_figure_set_x_range(panel, extent->low[0], extent->high[0]);
     wb_figure_set_y_range(panel, extent->low[1], extent->high[1]);
     add_field(panel, field, &drawing);
@@ -656,9 +631,8 @@ static void find_loaded(struct loaded *loaded, const struct wb_wires_results *re
     *loaded = (struct loaded){.n = 0};
     for (int i = 0; i <= comparison->n_residual && loaded->n < 3; i++) {
         const int index = WB_WIRES_ELASTOPLASTIC + i;
-        const struct wb_wires_run *const run = wb_wires_solid_run(results, index);
-        const struct wb_field *const field =
-            run ? wb_fields_find(&run->fields, comparison->loaded_state, (double)NAN) : NULL;
+        const struct wb_field *const field = wb_wires_field(wb_wires_solid_run(results, index),
+                                                            comparison->loaded_state, (double)NAN);
         if (!field)
             continue;
         extend(&loaded->extent, field);
@@ -696,9 +670,9 @@ static enum wb_status draw_residual_stress(struct wb_figures_item *item)
 /* --- the table --- */
 
 const struct wb_figures_row wb_wires_figures[WB_WIRES_FIGURES] = {
-    {"elastic", NULL, draw_elastic, false},
+    {"elastic", NULL, draw_stress, false},
     {"elastic-shapes", NULL, draw_elastic_shapes, false},
-    {"elastoplastic", NULL, draw_elastoplastic, false},
+    {"elastoplastic", NULL, draw_stress, false},
     {"elastoplastic", NULL, draw_shapes, false},
     {"found", NULL, draw_loading, false},
     {"residual", count_residual, draw_residual, false},

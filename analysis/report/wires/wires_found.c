@@ -1,6 +1,5 @@
 /* The first page of a comparison of wires. */
 #include <math.h>
-#include <stdio.h>
 
 #include "analysis/report/found.h"
 #include "analysis/report/pages.h"
@@ -26,9 +25,8 @@ static void add_elastic(struct wb_found *found, const struct wb_wires_results *r
     if (isfinite(cost))
         wb_text_append(&text, ", and the rod takes %.3g %% of the solid's CPU time", cost);
     wb_text_append(&text, ".");
-    const struct wb_field *const field =
-        wb_fields_find(&solid->fields, comparison->loaded_state, (double)NAN);
-    const double stress = wb_wires_find_peak(field, 0).stress;
+    const double stress =
+        wb_wires_find_peak(wb_wires_field(solid, comparison->loaded_state, (double)NAN), 0).stress;
     const double yield = plastic->part[0].material.yield_stress;
     if (isfinite(stress) && stress > yield)
         wb_text_append(&text,
@@ -71,20 +69,8 @@ static void add_elastoplastic(struct wb_found *found, const struct wb_wires_resu
 /* Residual stress of the pre-loads, and its effect on the tip. */
 static void add_residual(struct wb_found *found, const struct wb_wires_results *results)
 {
-    const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *const without = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
-    double moved = (double)NAN, stress = (double)NAN;
-    for (int i = 0; i < comparison->n_residual; i++) {
-        const struct wb_wires_run *const run = wb_wires_solid_run(results, WB_WIRES_RESIDUAL + i);
-        const struct wb_field *const field =
-            run ? wb_fields_find(&run->fields, comparison->residual_state, comparison->section)
-                : NULL;
-        if (!run || !without)
-            continue;
-        moved = fmax(moved, wb_wires_effect(run, without));
-        stress = fmax(stress, wb_wires_find_peak(field, 0).stress);
-    }
-    if (isfinite(moved) && isfinite(stress))
+    double stress, moved;
+    if (wb_wires_residual(results, &stress, &moved))
         wb_found_say(found, WB_FOUND_RESULT,
                      "<b>Residual stress</b>: the pre-loads leave at most %.0f MPa in the core, "
                      "which moves the tip by at most %.3g mm while the force grows.",

@@ -4,8 +4,6 @@
 
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "report"
-
 static void print(FILE *out, const void *context)
 {
     const struct wb_wires_results *const results = context;

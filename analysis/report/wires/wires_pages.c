@@ -8,7 +8,6 @@
 
 #include "analysis/report/pages.h"
 #include "analysis/report/simulation_pages.h"
-#include "base/text.h"
 #include "base/units.h"
 
 /* --- the fit, where it failed --- */
@@ -48,9 +47,8 @@ static double angle_of(const struct wb_wires_run *run)
 
 static double largest_stress(const struct wb_wires_results *results, int index)
 {
-    const struct wb_wires_run *const run = wb_wires_solid_run(results, index);
-    const struct wb_field *const field =
-        run ? wb_fields_find(&run->fields, results->comparison->loaded_state, (double)NAN) : NULL;
+    const struct wb_field *const field = wb_wires_field(
+        wb_wires_solid_run(results, index), results->comparison->loaded_state, (double)NAN);
     return wb_wires_find_peak(field, 0).stress / WB_MPA;
 }
 
@@ -68,13 +66,8 @@ static void put_facts(struct wb_document *document, const struct wb_wires_result
         {.heading = "Paper", .right = true},
     };
     const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *runs[WB_WIRES_RESIDUAL][WB_WIRES_SOLVERS];
-    for (int i = 0; i < WB_WIRES_RESIDUAL; i++) {
-        for (int k = 0; k < WB_WIRES_SOLVERS; k++)
-            runs[i][k] = wb_wires_usable(results, i, (enum wb_wires_solver)k);
-    }
-    const struct wb_wires_run *const elastic = runs[WB_WIRES_ELASTIC][0];
-    const struct wb_wires_run *const plastic = runs[WB_WIRES_ELASTOPLASTIC][0];
+    const struct wb_wires_run *const elastic = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
+    const struct wb_wires_run *const plastic = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
     const bool fitted = results->fit_state == WB_SIMULATION_USABLE && results->fitted.reached;
     const double none = (double)NAN;
     char stress[40] = "", cost[40] = "";
@@ -86,13 +79,13 @@ static void put_facts(struct wb_document *document, const struct wb_wires_result
         {"Elastic: largest von Mises stress of the core, 3D", "MPa",
          largest_stress(results, WB_WIRES_ELASTIC), 0, stress},
         {"Elastic: largest distance of the axes, 1D from 3D", "mm",
-         distance_between(elastic, runs[WB_WIRES_ELASTIC][1]), 3, NULL},
+         distance_between(elastic, wb_wires_rod_run(results, WB_WIRES_ELASTIC)), 3, NULL},
         {"Elastic: largest distance of the axes, friction from bond", "mm",
-         distance_between(elastic, runs[WB_WIRES_CONTACT][0]), 3, NULL},
+         distance_between(elastic, wb_wires_solid_run(results, WB_WIRES_CONTACT)), 3, NULL},
         {"Elastic: angle of the tip, 3D", "degrees", angle_of(elastic), 2, NULL},
         {"Elastoplastic: angle of the tip, 3D", "degrees", angle_of(plastic), 1, NULL},
         {"Elastoplastic: largest distance of the axes, 1D fibres from 3D", "mm",
-         distance_between(plastic, runs[WB_WIRES_ELASTOPLASTIC][1]), 2, NULL},
+         distance_between(plastic, wb_wires_rod_run(results, WB_WIRES_ELASTOPLASTIC)), 2, NULL},
         {"Elastoplastic: largest distance of the axes, 1D fitted from 3D", "mm",
          fitted && plastic ? wb_wires_rod_distance(plastic, &results->fitted) / WB_MM : none, 2,
          NULL},
@@ -108,7 +101,7 @@ static void put_facts(struct wb_document *document, const struct wb_wires_result
             ? "Paper: printed values. It prints no others, and its figures are lost."
             : NULL,
         4, columns);
-    for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
+    for (size_t i = 0; i < WB_COUNT(facts); i++)
         put_fact(table, &facts[i]);
 }
 
@@ -355,24 +348,25 @@ static void put_curl(struct wb_document *document, const struct wb_wires_results
     wb_pages_put_text(document, WB_BLOCK_NOTICE, WB_TONE_WARNING, &text);
 }
 
+/* A property of a material; NULL: it has none. */
+static void put_value(struct wb_document_table *table, const struct wb_material *material, int i)
+{
+    const struct wb_pages_property *const property = &wb_pages_properties[i];
+    wb_pages_cell_number(table,
+                         material ? wb_pages_value(material, i) / property->factor : (double)NAN,
+                         i == 2 ? 1 : property->decimals); /* K is small here */
+}
+
 static void put_property(struct wb_document_table *table, const struct wb_wires_results *results,
                          int i)
 {
     const struct wb_pages_property *const property = &wb_pages_properties[i];
-    const int decimals = i == 2 ? 1 : property->decimals; /* K is small here */
-    const bool fitted = results->fit_state == WB_SIMULATION_USABLE;
-    const bool printed = results->comparison->has_printed_wire;
+    const struct wb_wires *const comparison = results->comparison;
     wb_document_row(table, false);
     wb_pages_cell(table, WB_TONE_PLAIN, "%s %s", property->name, property->symbol);
     wb_pages_cell(table, WB_TONE_QUIET, "%s", property->unit);
-    wb_pages_cell_number(
-        table, fitted ? wb_pages_value(&results->fit.material, i) / property->factor : (double)NAN,
-        decimals);
-    wb_pages_cell_number(table,
-                         printed ? wb_pages_value(&results->comparison->printed_wire.material, i) /
-                                       property->factor
-                                 : (double)NAN,
-                         decimals);
+    put_value(table, results->fit_state == WB_SIMULATION_USABLE ? &results->fit.material : NULL, i);
+    put_value(table, comparison->has_printed_wire ? &comparison->printed_wire.material : NULL, i);
 }
 
 static void put_fit(struct wb_document *document, const struct wb_wires_results *results,
@@ -530,7 +524,7 @@ static void put_residual_row(struct wb_document_table *table,
     const struct wb_wires_run *const without =
         wb_wires_usable(results, WB_WIRES_ELASTOPLASTIC, solver);
     const struct wb_field *const field =
-        run ? wb_fields_find(&run->fields, comparison->residual_state, comparison->section) : NULL;
+        wb_wires_field(run, comparison->residual_state, comparison->section);
     double axial[2];
     if (!run)
         return;
@@ -575,27 +569,14 @@ static void put_residual_stresses(struct wb_document *document,
 /* The paper's finding beside ours. */
 static void put_finding(struct wb_document *document, const struct wb_wires_results *results)
 {
-    const struct wb_wires *const comparison = results->comparison;
-    const struct wb_wires_run *const without = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
-    double moved = (double)NAN, stress = (double)NAN;
+    double stress, moved;
     char text[500];
-    for (int i = 0; i < comparison->n_residual; i++) {
-        const struct wb_wires_run *const run = wb_wires_solid_run(results, WB_WIRES_RESIDUAL + i);
-        if (!run || !without)
-            continue;
-        moved = fmax(moved, wb_wires_effect(run, without));
-        stress =
-            fmax(stress, wb_wires_find_peak(wb_fields_find(&run->fields, comparison->residual_state,
-                                                           comparison->section),
-                                            0)
-                             .stress);
-    }
-    if (!isfinite(moved) || !isfinite(stress))
+    if (!wb_wires_residual(results, &stress, &moved))
         return;
     snprintf(text, sizeof text,
              "%s pre-loads leave at most <b>%.0f MPa</b> in the solid's core on that section, "
              "and move its tip by at most <b>%.2f mm</b> while the follower force grows.",
-             comparison->printed_source[0]
+             results->comparison->printed_source[0]
                  ? "The paper finds the shapes notably different. Here the"
                  : "The",
              stress / WB_MPA, moved / WB_MM);

@@ -1,16 +1,10 @@
 #include "analysis/report/wires/wires_results.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "analysis/report/reasons.h"
-#include "analysis/report/wires/wires_results_private.h"
 #include "base/interrupt.h"
-#include "base/units.h"
-
-#define WB_LOG_DOMAIN "report"
 
 const struct wb_wires_run *wb_wires_usable(const struct wb_wires_results *results, int index,
                                            enum wb_wires_solver solver)
@@ -80,7 +74,7 @@ static struct wb_wires_wire wire_of(const struct wb_wires *comparison, int index
         .material = {.hardening = WB_HARDENING_NONE_ELASTIC,
                      .youngs_modulus = wb_wire_model_youngs_modulus(model),
                      .poissons_ratio = wb_wire_model_poissons_ratio(model)},
-        .force = model->step[model->n_steps - 1].loads.follower[1],
+        .force = wb_wires_force(model),
         .n_elements = comparison->head.fit.n_elements,
         .n_fibres = comparison->head.fit.n_fibres,
     };
@@ -153,11 +147,32 @@ double wb_wires_cost(const struct wb_wires_results *results, int index)
     return solid && rod ? rod->simulation.cpu_s / solid->simulation.cpu_s : (double)NAN;
 }
 
-double wb_wires_tip_error(const struct wb_wires_results *results, const struct wb_wires_run *run)
+bool wb_wires_residual(const struct wb_wires_results *results, double *stress, double *moved)
+{
+    const struct wb_wires *const comparison = results->comparison;
+    const struct wb_wires_run *const without = wb_wires_solid_run(results, WB_WIRES_ELASTOPLASTIC);
+    *stress = *moved = (double)NAN;
+    for (int i = 0; i < comparison->n_residual; i++) {
+        const struct wb_wires_run *const run = wb_wires_solid_run(results, WB_WIRES_RESIDUAL + i);
+        if (!run || !without)
+            continue;
+        const struct wb_field *const field =
+            wb_wires_field(run, comparison->residual_state, comparison->section);
+        *moved = fmax(*moved, wb_wires_effect(run, without));
+        *stress = fmax(*stress, wb_wires_find_peak(field, 0).stress);
+    }
+    return isfinite(*moved) && isfinite(*stress);
+}
+
+/* Distance of a run's tip from the exact elastic one, over that one's displacement; NaN without a
+ * run. */
+static double tip_error(const struct wb_wires_results *results, const struct wb_wires_run *run)
 {
     const int last = WB_WIRES_POINTS - 1;
     const struct wb_wires_rod *const exact = &results->exact;
     const double x = exact->x[last], y = exact->y[last];
+    if (!run)
+        return (double)NAN;
     return hypot(hypot(run->tip[0] - x, run->tip[1] - y), run->tip[2]) /
            hypot(x - exact->s[last], y);
 }
@@ -182,38 +197,31 @@ static double largest_difference(const struct wb_wires_results *results)
 int wb_wires_results_judge(const struct wb_wires_results *results,
                            struct wb_verdict verdicts[WB_WIRES_VERDICTS])
 {
-    static const char *const tips[WB_WIRES_SOLVERS] = {
-        "Tip of the elastic solid from the exact one, over its displacement",
-        "Tip of the elastic rod from the exact one, over its displacement"};
     const struct wb_wires *const comparison = results->comparison;
-    int n = 0, n_usable = 0;
-    for (int k = 0; k < WB_WIRES_SOLVERS; k++) {
-        const struct wb_wires_run *const run =
-            wb_wires_usable(results, WB_WIRES_ELASTIC, (enum wb_wires_solver)k);
-        if (!run)
-            continue;
-        n_usable++;
-        wb_verdict_add(verdicts, &n,
-                       &(struct wb_verdict){.what = tips[k],
-                                            .key = "tip_max",
-                                            .value = wb_wires_tip_error(results, run),
-                                            .limit = comparison->tip_limit});
+    const struct wb_wires_run *const solid = wb_wires_solid_run(results, WB_WIRES_ELASTIC);
+    const struct wb_wires_run *const rod = wb_wires_rod_run(results, WB_WIRES_ELASTIC);
+    const struct {
+        bool is_known;
+        struct wb_verdict verdict;
+    } all[WB_WIRES_VERDICTS] = {
+        {solid,
+         {"Tip of the elastic solid from the exact one, over its displacement", "tip_max",
+          .value = tip_error(results, solid), .limit = comparison->tip_limit}},
+        {rod,
+         {"Tip of the elastic rod from the exact one, over its displacement", "tip_max",
+          .value = tip_error(results, rod), .limit = comparison->tip_limit}},
+        {results->n_stresses > 0,
+         {"Elastic stress of the core's outer fibre from <i>E\xce\xba</i><i>r</i>", "stress_max",
+          .value = largest_difference(results), .limit = comparison->stress_limit}},
+        {solid && rod,
+         {"CPU seconds of the elastic rod over those of the solid", "cost_max",
+          .value = wb_wires_cost(results, WB_WIRES_ELASTIC), .limit = comparison->cost_limit}},
+    };
+    int n = 0;
+    for (int i = 0; i < WB_WIRES_VERDICTS; i++) {
+        if (all[i].is_known)
+            wb_verdict_add(verdicts, &n, &all[i].verdict);
     }
-    if (results->n_stresses > 0)
-        wb_verdict_add(
-            verdicts, &n,
-            &(struct wb_verdict){
-                .what = "Elastic stress of the core's outer fibre from <i>E\xce\xba</i><i>r</i>",
-                .key = "stress_max",
-                .value = largest_difference(results),
-                .limit = comparison->stress_limit});
-    if (n_usable == WB_WIRES_SOLVERS)
-        wb_verdict_add(
-            verdicts, &n,
-            &(struct wb_verdict){.what = "CPU seconds of the elastic rod over those of the solid",
-                                 .key = "cost_max",
-                                 .value = wb_wires_cost(results, WB_WIRES_ELASTIC),
-                                 .limit = comparison->cost_limit});
     return n;
 }
 

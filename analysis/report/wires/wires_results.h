@@ -9,11 +9,7 @@
 #include "analysis/calibration/paper/calibrate.h"
 #include "analysis/report/kind.h"
 #include "analysis/report/verdict.h"
-#include "analysis/report/wires/wires.h"
-#include "analysis/report/wires/wires_rod.h"
 #include "analysis/report/wires/wires_run.h"
-#include "base/status.h"
-#include "base/text.h"
 
 /* Largest von Mises stress of a part on a section. */
 struct wb_wires_peak {
@@ -77,6 +73,10 @@ int wb_wires_results_judge(const struct wb_wires_results *results,
 
 /* CPU seconds of the rod over the solid's; NaN unless both are used and known. */
 double wb_wires_cost(const struct wb_wires_results *results, int index);
+
+/* Largest residual stress of the solids' cores on the drawn section, Pa, and the most by which it
+ * moves their tips, m; false: not known. */
+bool wb_wires_residual(const struct wb_wires_results *results, double *stress, double *moved);
 
 /* By how much E of the jacket moves when that of the core moves by a part `change` and the
  * effective modulus of eq. 8 stays, Pa. */

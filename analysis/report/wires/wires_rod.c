@@ -7,23 +7,19 @@
 #include "fe/rod/section.h"
 #include "fe/trial/cantilever.h"
 
-#define WB_LOG_DOMAIN "report"
-
 static enum wb_status load(struct wb_wires_rod *rod, const struct wb_wires_wire *wire,
                            struct wb_cantilever *cantilever)
 {
-    struct wb_cantilever_point point = {.end = WB_CANTILEVER_CONVERGED};
-    rod->n_curve = 1;
-    while (rod->n_curve <= WB_WIRES_STEPS && point.end == WB_CANTILEVER_CONVERGED) {
+    for (rod->n_curve = 1; rod->n_curve <= WB_WIRES_STEPS; rod->n_curve++) {
         const int i = rod->n_curve;
         const double force = wire->force * i / WB_WIRES_STEPS;
+        struct wb_cantilever_point point;
         WB_TRY(wb_cantilever_move(cantilever, WB_CONTROL_FOLLOWER_FORCE, force, &point));
         if (point.end != WB_CANTILEVER_CONVERGED)
             break;
         rod->force[i] = force;
         rod->deflection[i] = point.deflection;
         rod->angle[i] = point.tip_angle;
-        rod->n_curve++;
     }
     rod->reached = rod->n_curve == WB_WIRES_STEPS + 1;
     for (int i = 0; i < WB_WIRES_POINTS; i++)

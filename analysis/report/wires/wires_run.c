@@ -2,7 +2,6 @@
 #include "analysis/report/wires/wires_run.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,12 +25,19 @@ static void read_simulation(struct wb_wires_run *run)
     run->opening = wb_simulation_number(interface, "opening_mm") * WB_MM;
 }
 
+/* A point of the axis; the planar rod has no z. */
+static void take_point(const struct wb_shape_row *row, double point[3])
+{
+    point[0] = row->x;
+    point[1] = row->y;
+    point[2] = isfinite(row->z) ? row->z : 0.0;
+}
+
 /* State and axis at the end of the history. */
 static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_model *model,
                                struct wb_reason *why)
 {
     const struct wb_dataset *const dataset = &run->simulation.dataset;
-    const double force = model->step[model->n_steps - 1].loads.follower[1];
     if (dataset->n_rows == 0 || dataset->n_shape_rows < 2)
         return wb_fail_to(why, WB_ERR_DATA, "it has no rows or no shapes");
     const struct wb_row *const last = &dataset->rows[dataset->n_rows - 1];
@@ -44,14 +50,12 @@ static enum wb_status take_end(struct wb_wires_run *run, const struct wb_wire_mo
     run->s = wb_memory_new(n, sizeof *run->s);
     run->shape = wb_memory_new(n, sizeof *run->shape);
     for (size_t i = 0; i < n; i++) {
-        const struct wb_shape_row *const row = &dataset->shape_rows[first + i];
-        const double z = isfinite(row->z) ? row->z : 0.0;
-        run->s[i] = row->s;
-        memcpy(run->shape[i], (double[3]){row->x, row->y, z}, sizeof run->shape[i]);
+        run->s[i] = dataset->shape_rows[first + i].s;
+        take_point(&dataset->shape_rows[first + i], run->shape[i]);
     }
     run->n_shape = (int)n;
     memcpy(run->tip, run->shape[n - 1], sizeof run->tip);
-    run->force = force;
+    run->force = wb_wires_force(model);
     run->tip_angle = last->tip_angle;
     if (fabs(run->s[n - 1] - model->length) > 1e-6 * model->length)
         return wb_fail_to(why, WB_ERR_DATA, "its shapes end at %g mm, not at the wire's tip",
@@ -88,10 +92,8 @@ static void take_loading(struct wb_wires_run *run, const struct wb_wire_model *m
             at++;
         if (at == 0 || dataset->shape_rows[at - 1].t != t)
             return;
-        const struct wb_shape_row *const tip = &dataset->shape_rows[at - 1];
         run->loading[i] = run->force * i / rows;
-        memcpy(run->loaded[i], (double[3]){tip->x, tip->y, isfinite(tip->z) ? tip->z : 0.0},
-               sizeof run->loaded[i]);
+        take_point(&dataset->shape_rows[at - 1], run->loaded[i]);
     }
     run->n_loading = rows + 1;
 }
@@ -152,6 +154,11 @@ void wb_wires_run_release(struct wb_wires_run *run)
     free(run->loading);
     free(run->loaded);
     memset(run, 0, sizeof *run);
+}
+
+const struct wb_field *wb_wires_field(const struct wb_wires_run *run, const char *state, double x)
+{
+    return run ? wb_fields_find(&run->fields, state, x) : NULL;
 }
 
 /* --- comparing --- */

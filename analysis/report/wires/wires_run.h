@@ -4,13 +4,9 @@
 #ifndef WB_ANALYSIS_REPORT_WIRES_WIRES_RUN_H
 #define WB_ANALYSIS_REPORT_WIRES_WIRES_RUN_H
 
-#include <stdbool.h>
-
-#include "analysis/dataset/dataset.h"
 #include "analysis/dataset/fields.h"
 #include "analysis/report/wires/wires.h"
 #include "analysis/report/wires/wires_rod.h"
-#include "base/text.h"
 
 /* A dataset, and its data on the simulation; numbers are NaN where it has none. */
 struct wb_wires_run {
@@ -33,6 +29,9 @@ struct wb_wires_run {
 void wb_wires_run_load(struct wb_wires_run *run, const struct wb_wires_case *item,
                        enum wb_wires_solver solver);
 void wb_wires_run_release(struct wb_wires_run *run); /* accepts a zeroed one */
+
+/* A field of a run (NULL: there is none) as of wb_fields_find(). */
+const struct wb_field *wb_wires_field(const struct wb_wires_run *run, const char *state, double x);
 
 /* A point of a run's axis at an arc length within it, m; smooth between those that it holds. */
 void wb_wires_axis_point(const struct wb_wires_run *run, double s, double point[3]);
