@@ -5,10 +5,7 @@
 #include <string.h>
 
 #include "analysis/dataset/simulated.h"
-#include "analysis/report/campaign.h"
 #include "base/config.h"
-
-#define WB_LOG_DOMAIN "campaign"
 
 const struct wb_wire *wb_bundles_published(const struct wb_bundles_run *run)
 {

@@ -1,6 +1,5 @@
 /* The first page of a report of bundles. */
 #include <math.h>
-#include <stdio.h>
 
 #include "analysis/report/bundles/bundles_kind.h"
 #include "analysis/report/found.h"

@@ -4,8 +4,6 @@
 
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "report"
-
 static void print_bundle(FILE *out, const struct wb_bundles_results *results, int index)
 {
     const struct wb_bundles *const campaign = results->campaign;

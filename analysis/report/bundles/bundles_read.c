@@ -6,7 +6,6 @@
 #include "analysis/report/bundles/bundles.h"
 #include "base/config.h"
 #include "base/memory.h"
-#include "base/units.h"
 #include "fe/model/bundle_override.h"
 
 /* What a run has in place of its bundle's, as the command's options say it; has_... tells what else

@@ -1,7 +1,6 @@
 #include "analysis/report/bundles/bundles_results.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -12,7 +12,6 @@
 #include "analysis/report/bundles/bundles_section.h"
 #include "analysis/report/kind.h"
 #include "analysis/report/verdict.h"
-#include "base/status.h"
 #include "base/text.h"
 
 /* The homogenised beam fitted to a bundle's run with decaying friction. */

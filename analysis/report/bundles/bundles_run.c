@@ -1,7 +1,6 @@
 #include "analysis/report/bundles/bundles_run.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -11,7 +11,6 @@
 #include "analysis/dataset/surface.h"
 #include "analysis/report/bundles/bundles.h"
 #include "base/reason.h"
-#include "base/text.h"
 
 /* A row of energies.csv, J. */
 struct wb_bundles_energy {

@@ -1,6 +1,5 @@
 #include "analysis/report/machines/machines_cable.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -7,8 +7,6 @@
 #include "analysis/report/pdf.h"
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "report"
-
 /* The curvatures that a table shows: these parts of the largest. */
 static const int shown[] = {4, 9, 14, 19};
 

@@ -7,8 +7,6 @@
 #include "analysis/report/pdf.h"
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "report"
-
 /* A bias below this part of s is hidden by the scatter of the tests. */
 static const double most_bias = 0.7;
 

@@ -18,8 +18,6 @@
 #ifndef WB_ANALYSIS_REPORT_PREDICTIONS_PREDICTIONS_H
 #define WB_ANALYSIS_REPORT_PREDICTIONS_PREDICTIONS_H
 
-#include <stdbool.h>
-
 #include "analysis/dataset/dataset.h"
 #include "analysis/predict/bands.h"
 #include "analysis/report/campaign.h"
