@@ -186,24 +186,9 @@ static enum wb_status draw_errors(struct wb_figures_item *item)
 
 /* --- energies --- */
 
-enum energy {
-    INTERNAL,
-    FRICTION,
-    KINETIC,
-    ARTIFICIAL,
-    ENERGIES
+enum {
+    ENERGIES = 4
 };
-
-static double energy_of(const struct wb_bundles_energy *row, enum energy kind)
-{
-    const double of[ENERGIES] = {
-        [INTERNAL] = row->internal,
-        [FRICTION] = row->friction,
-        [KINETIC] = row->kinetic,
-        [ARTIFICIAL] = row->artificial,
-    };
-    return of[kind];
-}
 
 static void add_energies(struct wb_panel *panel, const struct wb_bundles_result *run)
 {
@@ -217,15 +202,18 @@ static void add_energies(struct wb_panel *panel, const struct wb_bundles_result 
     const size_t n = run ? (size_t)run->n_energies : 0;
     if (n == 0)
         return;
-    double *const values = wb_memory_new(2 * n, sizeof *values);
-    for (int kind = 0; kind < ENERGIES; kind++) {
-        for (size_t i = 0; i < n; i++) {
-            values[i] = run->energies[i].time;
-            values[n + i] = energy_of(&run->energies[i], (enum energy)kind) / millijoule;
-        }
-        wb_figure_add_line(panel, labels[kind], n, values, values + n, &styles[kind]);
+    double *const times = wb_memory_new((1 + ENERGIES) * n, sizeof *times), *const values =
+                                                                                times + n;
+    for (size_t i = 0; i < n; i++) {
+        const struct wb_bundles_energy *const row = &run->energies[i];
+        const double of[ENERGIES] = {row->internal, row->friction, row->kinetic, row->artificial};
+        times[i] = row->time;
+        for (size_t kind = 0; kind < ENERGIES; kind++)
+            values[kind * n + i] = of[kind] / millijoule;
     }
-    free(values);
+    for (size_t kind = 0; kind < ENERGIES; kind++)
+        wb_figure_add_line(panel, labels[kind], n, times, values + kind * n, &styles[kind]);
+    free(times);
 }
 
 static double largest_energy(const struct wb_bundles_result *run)
@@ -240,26 +228,21 @@ static enum wb_status draw_energies(struct wb_figures_item *item)
 {
     const struct wb_bundles_results *const results = item->results;
     const struct wb_bundles_group *const group = &results->campaign->groups[item->index];
-    bool any = false;
-    for (int i = group->first; i < group->first + group->n; i++)
-        any |= wb_bundles_results_usable(results, results->campaign->bundles[i].dynamic) != NULL;
-    if (!any)
-        return WB_OK;
-    WB_TRY(start(&item->figure, "energies", item->index, panel_height));
     char place[48];
     wb_text_append(&item->caption,
                    "Energies%s over the model's own time, with decaying friction. Internal: stored "
                    "and plastic, in wires, tape, contact and cohesion.",
                    wb_pages_paper_figure(place, group->figures[WB_BUNDLES_ENERGY]));
-    for (int i = group->first, n = 0; i < group->first + group->n; i++) {
-        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
-        const struct wb_bundles_result *const run =
-            wb_bundles_results_usable(results, bundle->dynamic);
+    for (int i = group->first; i < group->first + group->n; i++) {
+        const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, i);
+        const bool is_first = !item->figure;
         if (!run)
             continue;
+        if (is_first)
+            WB_TRY(start(&item->figure, "energies", item->index, panel_height));
         struct wb_panel *const panel = wb_figure_add_panel(item->figure);
-        wb_figures_set_title(panel, bundle->label);
-        wb_figure_set_axes(panel, "Time of the model (s)", n++ == 0 ? "Energy (mJ)" : "");
+        wb_figures_set_title(panel, results->campaign->bundles[i].label);
+        wb_figure_set_axes(panel, "Time of the model (s)", is_first ? "Energy (mJ)" : "");
         /* Room above for the legend, so that the panels are alike. */
         wb_figure_set_y_range(panel, 0.0, 1.3 * largest_energy(run) / millijoule);
         add_energies(panel, run);
@@ -275,8 +258,7 @@ static double most_stress(const struct wb_bundles_results *results,
 {
     double most = 0.0;
     for (int i = group->first; i < group->first + group->n; i++) {
-        const struct wb_bundles_result *const run =
-            wb_bundles_results_usable(results, results->campaign->bundles[i].dynamic);
+        const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, i);
         if (run && run->surface.n > 0)
             most = fmax(most, wb_figures_surface_most_stress(&run->surface));
     }
@@ -288,7 +270,7 @@ static enum wb_status draw_shape(struct wb_figures_item *item)
     const struct wb_bundles_results *const results = item->results;
     const struct wb_bundles *const campaign = results->campaign;
     const struct wb_bundles_bundle *const bundle = &campaign->bundles[item->index];
-    const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, item->index);
     struct wb_text title = {0};
     char name[64];
     if (!run || run->surface.n == 0)
@@ -343,8 +325,10 @@ static enum wb_status draw_studies(struct wb_figures_item *item)
 {
     const struct wb_bundles_results *const results = item->results;
     const struct wb_bundles *const campaign = results->campaign;
+    const int first = 2 * item->index;
+    const int end = first + 2 < campaign->n_studies ? first + 2 : campaign->n_studies;
     bool any = false;
-    for (int k = 2 * item->index; k < 2 * item->index + 2 && k < campaign->n_studies; k++) {
+    for (int k = first; k < end; k++) {
         for (int i = 0; i < campaign->studies[k].n; i++)
             any |= wb_bundles_results_usable(results, campaign->studies[k].runs[i]) != NULL;
     }
@@ -352,9 +336,9 @@ static enum wb_status draw_studies(struct wb_figures_item *item)
         return WB_OK;
     WB_TRY(start(&item->figure, "study", item->index, 220.0));
     wb_text_append(&item->caption, "Studies of ");
-    for (int k = 2 * item->index; k < 2 * item->index + 2 && k < campaign->n_studies; k++) {
+    for (int k = first; k < end; k++) {
         const struct wb_bundles_study *const study = &campaign->studies[k];
-        wb_text_append(&item->caption, "%s<i>", k > 2 * item->index ? " and " : "");
+        wb_text_append(&item->caption, "%s<i>", k > first ? " and " : "");
         wb_text_append_escaped(&item->caption, study->title);
         wb_text_append(&item->caption, "</i> (");
         wb_text_append_escaped(&item->caption, campaign->runs[study->runs[0]].model->title);
@@ -365,8 +349,48 @@ static enum wb_status draw_studies(struct wb_figures_item *item)
                    "the first run's loading.",
                    item->index == 0 && campaign->printed_source[0] ? ", after the paper's Fig. 18"
                                                                    : "");
-    for (int k = 2 * item->index; k < 2 * item->index + 2 && k < campaign->n_studies; k++)
-        draw_study(item->figure, results, &campaign->studies[k], k == 2 * item->index);
+    for (int k = first; k < end; k++)
+        draw_study(item->figure, results, &campaign->studies[k], k == first);
+    return WB_OK;
+}
+
+/* --- the section model --- */
+
+/* Of the run with constant friction, where both models have the same one, else of the other. */
+static int shown_run(const struct wb_bundles_results *results,
+                     const struct wb_bundles_bundle *bundle)
+{
+    return wb_bundles_results_usable(results, bundle->constant) &&
+                   wb_bundles_results_section(results, bundle->constant)
+               ? bundle->constant
+               : bundle->dynamic;
+}
+
+static enum wb_status draw_section_model(struct wb_figures_item *item)
+{
+    const struct wb_bundles_results *const results = item->results;
+    const struct wb_bundles_group *const group = &results->campaign->groups[item->index];
+    wb_text_append(&item->caption,
+                   "Force over deflection of the section model and of the explicit one, with the "
+                   "same constant friction where there is such a run.");
+    for (int i = group->first; i < group->first + group->n; i++) {
+        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
+        const int run = shown_run(results, bundle);
+        const struct wb_bundles_result *const explicit = wb_bundles_results_usable(results, run);
+        const struct wb_bundles_section *const section = wb_bundles_results_section(results, run);
+        const bool is_first = !item->figure;
+        if (!section)
+            continue;
+        if (is_first)
+            WB_TRY(start(&item->figure, "section-model", item->index, panel_height));
+        struct wb_panel *const panel = add_force_panel(item->figure, bundle->label, is_first);
+        const double largest = explicit ? explicit->curve.max_force : 0.0;
+        add_run(panel, "explicit 3D", explicit, &wb_figures_reference_style);
+        /* Room above for the legend, so that the panels are alike. */
+        wb_figure_set_y_range(panel, 0.0, 1.25 * fmax(section->curve.max_force, largest));
+        wb_figures_add_curve(panel, "section model", &section->curve, section->curve.force, 1.0,
+                             &dynamic_style);
+    }
     return WB_OK;
 }
 
@@ -400,36 +424,6 @@ static size_t take_axis(const struct wb_dataset *dataset, double *deflection, do
     return n;
 }
 
-static enum wb_status add_shapes(struct wb_panel *inset, const struct wb_bundles_result *run,
-                                 const struct wb_bundles_fit *fit,
-                                 const struct wb_figure_style *solid,
-                                 const struct wb_figure_style *beam)
-{
-    struct wb_properties properties;
-    wb_properties_from_result(&fit->result, &properties);
-    wb_figure_set_axes(inset, "<i>x</i> (mm)", "<i>y</i> (mm)");
-    wb_figure_set_equal_aspect(inset);
-    for (int i = 1; i <= SHAPES; i++) {
-        double x[MOST_MARKERS], y[MOST_MARKERS], line_x[SHAPE_POINTS], line_y[SHAPE_POINTS];
-        double deflection = run->curve.max_deflection * i / SHAPES;
-        const size_t n = take_axis(&run->simulation.dataset, &deflection, x, y);
-        if (n == 0)
-            continue;
-        wb_figure_add_line(inset, NULL, n, x, y, solid);
-        const enum wb_status status = wb_validate_shape(&properties, &run->simulation.dataset.info,
-                                                        deflection, SHAPE_POINTS, line_x, line_y);
-        if (status == WB_ERR_CONVERGENCE)
-            continue;
-        WB_TRY(status);
-        for (int k = 0; k < SHAPE_POINTS; k++) {
-            line_x[k] /= WB_MM;
-            line_y[k] /= WB_MM;
-        }
-        wb_figure_add_line(inset, NULL, SHAPE_POINTS, line_x, line_y, beam);
-    }
-    return WB_OK;
-}
-
 static struct wb_figure_style solid_style(int index)
 {
     return (struct wb_figure_style){.colour = wb_palette_fade(wb_palette_wire(index), 0.45),
@@ -442,10 +436,41 @@ static struct wb_figure_style beam_style(int index)
         .colour = wb_palette_wire(index), .width = 1.2, .dash = WB_DASH_DASHED};
 }
 
+static enum wb_status add_shapes(struct wb_panel *inset, const struct wb_bundles_results *results,
+                                 int index)
+{
+    const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, index);
+    const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
+    const struct wb_figure_style solid = solid_style(index), beam = beam_style(index);
+    struct wb_properties properties;
+    wb_properties_from_result(&fit->result, &properties);
+    wb_figure_set_axes(inset, "<i>x</i> (mm)", "<i>y</i> (mm)");
+    wb_figure_set_equal_aspect(inset);
+    for (int i = 1; i <= SHAPES; i++) {
+        double x[MOST_MARKERS], y[MOST_MARKERS], line_x[SHAPE_POINTS], line_y[SHAPE_POINTS];
+        double deflection = run->curve.max_deflection * i / SHAPES;
+        const size_t n = take_axis(&run->simulation.dataset, &deflection, x, y);
+        if (n == 0)
+            continue;
+        wb_figure_add_line(inset, NULL, n, x, y, &solid);
+        const enum wb_status status = wb_validate_shape(&properties, &run->simulation.dataset.info,
+                                                        deflection, SHAPE_POINTS, line_x, line_y);
+        if (status == WB_ERR_CONVERGENCE)
+            continue;
+        WB_TRY(status);
+        for (int k = 0; k < SHAPE_POINTS; k++) {
+            line_x[k] /= WB_MM;
+            line_y[k] /= WB_MM;
+        }
+        wb_figure_add_line(inset, NULL, SHAPE_POINTS, line_x, line_y, &beam);
+    }
+    return WB_OK;
+}
+
 static void add_fit(struct wb_panel *panel, const struct wb_bundles_results *results, int index)
 {
     const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
-    const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, index);
     const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
     const struct wb_figure_style solid = solid_style(index), beam = beam_style(index);
     struct wb_text label = {0};
@@ -483,8 +508,7 @@ static enum wb_status draw_fit(struct wb_figures_item *item)
     double largest = 0.0;
     bool some_rod = false; /* then variants without one would only crowd the figure */
     for (int i = 0; i < campaign->n_bundles; i++) {
-        const struct wb_bundles_result *const run =
-            wb_bundles_results_usable(results, campaign->bundles[i].dynamic);
+        const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, i);
         largest = fmax(largest, run ? run->curve.max_force : 0.0);
         some_rod = some_rod || campaign->bundles[i].has_rod;
     }
@@ -511,12 +535,7 @@ static enum wb_status draw_fit(struct wb_figures_item *item)
             add_fit(panel, results, i);
     if (campaign->inset < 0 || !wb_bundles_results_fit(results, campaign->inset))
         return WB_OK;
-    const struct wb_figure_style solid = solid_style(campaign->inset),
-                                 beam = beam_style(campaign->inset);
-    return add_shapes(
-        wb_figure_add_inset(panel),
-        wb_bundles_results_usable(results, campaign->bundles[campaign->inset].dynamic),
-        wb_bundles_results_fit(results, campaign->inset), &solid, &beam);
+    return add_shapes(wb_figure_add_inset(panel), results, campaign->inset);
 }
 
 /* The RMS of every bundle from its published curve beside the limit. */
@@ -597,6 +616,6 @@ const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS] = {
     {"curves", count_groups, draw_errors, false},
     {"energies", count_groups, draw_energies, false},
     {"shapes", count_bundles, draw_shape, false},
-    {"section-model", count_groups, wb_bundles_section_draw, false},
+    {"section-model", count_groups, draw_section_model, false},
     {"fit", NULL, draw_fit, false},
 };

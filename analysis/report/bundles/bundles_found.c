@@ -52,15 +52,13 @@ static void add_forces(struct wb_found *found, const struct wb_bundles_results *
     const struct wb_bundles *const campaign = results->campaign;
     struct wb_text above = {0}, below = {0}, alone = {0};
     for (int i = 0; i < campaign->n_bundles; i++) {
-        const struct wb_bundles_bundle *const bundle = &campaign->bundles[i];
-        const struct wb_bundles_result *const run =
-            wb_bundles_results_usable(results, bundle->dynamic);
+        const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, i);
         if (!run)
             continue;
         const bool has_published = run->published && run->published_max > 0.0;
         const double change = has_published ? run->curve.max_force / run->published_max - 1.0 : 0.0;
         struct wb_text *const names = !has_published ? &alone : change < 0.0 ? &below : &above;
-        append_name(names, bundle->label);
+        append_name(names, campaign->bundles[i].label);
         wb_text_append(names, " %.*f N", wb_pages_decimals(run->curve.max_force),
                        run->curve.max_force);
         if (has_published)

@@ -8,7 +8,7 @@ static void print_bundle(FILE *out, const struct wb_bundles_results *results, in
 {
     const struct wb_bundles *const campaign = results->campaign;
     const struct wb_bundles_bundle *const bundle = &campaign->bundles[index];
-    const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, index);
     const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
     fprintf(out, "%-16s", bundle->label);
     if (run)
@@ -50,12 +50,12 @@ static enum wb_status add_cards(struct wb_cards *cards, const void *context)
     const struct wb_bundles_results *const results = context;
     const struct wb_bundles *const campaign = results->campaign;
     for (int i = 0; i < campaign->n_bundles; i++) {
-        const int dynamic = campaign->bundles[i].dynamic;
+        const struct wb_bundles_run *const run = &campaign->runs[campaign->bundles[i].dynamic];
         const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, i);
-        const struct wb_bundles_result *const run = wb_bundles_results_usable(results, dynamic);
-        if (fit && run)
-            WB_TRY(wb_cards_add_fit(cards, &fit->result, &campaign->head.fit,
-                                    campaign->runs[dynamic].dataset.name, run->simulation.sha256));
+        const struct wb_bundles_result *const result = wb_bundles_results_dynamic(results, i);
+        if (fit && result)
+            WB_TRY(wb_cards_add_fit(cards, &fit->result, &campaign->head.fit, run->dataset.name,
+                                    result->simulation.sha256));
     }
     return WB_OK;
 }

@@ -24,9 +24,8 @@ wb_kind_json wb_bundles_json_build;
 /* The first page, without its figure. */
 void wb_bundles_found_put(struct wb_document *document, const struct wb_bundles_results *results);
 
-/* The chapter on the section model beside the explicit one, and its figures, one a group. */
+/* The chapter on the section model beside the explicit one. */
 void wb_bundles_section_put(struct wb_document *document, const struct wb_bundles_results *results,
                             const struct wb_figures *figures);
-enum wb_status wb_bundles_section_draw(struct wb_figures_item *item);
 
 #endif

@@ -29,8 +29,7 @@ static void put_fact(struct wb_document_table *table, const struct wb_bundles_re
                      int index)
 {
     const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
-    const struct wb_bundles_result *const dynamic =
-        wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_result *const dynamic = wb_bundles_results_dynamic(results, index);
     const struct wb_bundles_result *const constant =
         wb_bundles_results_usable(results, bundle->constant);
     const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
@@ -195,9 +194,8 @@ static void put_sections(struct wb_document *document, const struct wb_bundles_r
     struct wb_document_table *const table = wb_document_table(
         document,
         "Packed: round wires and tape in the packing of this report. Printed: Table 4 of the "
-        "paper. "
-        "Density: eq. 30, over the printed diameter. <i>EI</i>: elastic bounds with the tape, of "
-        "wires that slide freely and of wires that are bonded.",
+        "paper. Density: eq. 30, over the printed diameter. <i>EI</i>: elastic bounds with the "
+        "tape, of wires that slide freely and of wires that are bonded.",
         9, columns);
     for (int i = 0; i < campaign->n_bundles; i++)
         put_section(table, &campaign->bundles[i], &campaign->runs[campaign->bundles[i].dynamic]);
@@ -227,26 +225,21 @@ static void put_studies(struct wb_document *document, const struct wb_bundles_re
 
 /* --- groups --- */
 
-static void put_group(struct wb_document *document, const struct wb_bundles_results *results,
-                      int index, const struct wb_figures *figures)
-{
-    const struct wb_bundles_group *const group = &results->campaign->groups[index];
-    char anchor[32];
-    snprintf(anchor, sizeof anchor, "group-%d", index + 1);
-    wb_document_heading(document, 1, anchor, group->label);
-    if (!wb_bundles_results_any(results, group))
-        wb_document_paragraph(document, "None of the datasets of this group could be used.");
-    wb_figures_put(figures, document, "curves", index);
-    for (int i = group->first; i < group->first + group->n; i++)
-        wb_figures_put(figures, document, "shapes", i);
-    wb_figures_put(figures, document, "energies", index);
-}
-
 static void put_groups(struct wb_document *document, const struct wb_bundles_results *results,
                        const struct wb_figures *figures)
 {
-    for (int i = 0; i < results->campaign->n_groups; i++)
-        put_group(document, results, i, figures);
+    for (int index = 0; index < results->campaign->n_groups; index++) {
+        const struct wb_bundles_group *const group = &results->campaign->groups[index];
+        char anchor[32];
+        snprintf(anchor, sizeof anchor, "group-%d", index + 1);
+        wb_document_heading(document, 1, anchor, group->label);
+        if (!wb_bundles_results_any(results, group))
+            wb_document_paragraph(document, "None of the datasets of this group could be used.");
+        wb_figures_put(figures, document, "curves", index);
+        for (int i = group->first; i < group->first + group->n; i++)
+            wb_figures_put(figures, document, "shapes", i);
+        wb_figures_put(figures, document, "energies", index);
+    }
 }
 
 /* --- 1D properties --- */
@@ -275,8 +268,7 @@ static void put_bundle(struct wb_document_table *table, const struct wb_bundles_
 {
     const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
     const struct wb_bundles_run *const run = &results->campaign->runs[bundle->dynamic];
-    const struct wb_bundles_result *const result =
-        wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_result *const result = wb_bundles_results_dynamic(results, index);
     const struct wb_wire *const published = wb_bundles_published(run);
     const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
     put_properties(table, bundle->label, "here", fit ? &fit->result.material : NULL,
@@ -378,7 +370,7 @@ static void put_cost_of(struct wb_document_table *table, const struct wb_bundles
                         int index)
 {
     const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
-    const struct wb_bundles_result *const run = wb_bundles_results_usable(results, bundle->dynamic);
+    const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, index);
     const struct wb_bundles_result *const rod = &results->rods[index];
     const double none = (double)NAN, cost = wb_bundles_results_cost(results, index);
     const double limit = results->campaign->limits.cost;

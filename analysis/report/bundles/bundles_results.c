@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/calibration/paper/computed.h"
 #include "analysis/report/reasons.h"
 #include "base/circle.h"
 #include "base/interrupt.h"
@@ -16,6 +15,12 @@ const struct wb_bundles_result *wb_bundles_results_usable(const struct wb_bundle
     return run >= 0 && results->runs[run].simulation.state == WB_SIMULATION_USABLE
                ? &results->runs[run]
                : NULL;
+}
+
+const struct wb_bundles_result *wb_bundles_results_dynamic(const struct wb_bundles_results *results,
+                                                           int bundle)
+{
+    return wb_bundles_results_usable(results, results->campaign->bundles[bundle].dynamic);
 }
 
 bool wb_bundles_results_either(const struct wb_bundles_results *results,
@@ -57,8 +62,7 @@ double wb_bundles_results_rigidity(double youngs_modulus, double diameter)
 double wb_bundles_results_cost(const struct wb_bundles_results *results, int bundle)
 {
     const struct wb_bundles_result *const rod = &results->rods[bundle];
-    const struct wb_bundles_result *const run =
-        wb_bundles_results_usable(results, results->campaign->bundles[bundle].dynamic);
+    const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, bundle);
     return run && rod->simulation.state == WB_SIMULATION_USABLE
                ? rod->simulation.cpu_s / run->simulation.cpu_s
                : (double)NAN;
@@ -66,40 +70,17 @@ double wb_bundles_results_cost(const struct wb_bundles_results *results, int bun
 
 /* --- limits --- */
 
-enum ratio {
-    KINETIC,
-    ARTIFICIAL,
-    IMBALANCE
-};
-
-static double ratio_of(const struct wb_bundles_numbers *numbers, enum ratio ratio)
-{
-    return ratio == KINETIC      ? numbers->kinetic
-           : ratio == ARTIFICIAL ? numbers->artificial
-                                 : numbers->imbalance;
-}
-
-/* The worst of all usable runs that are judged; a NaN is worse than any. */
+/* Adds the verdict on a ratio of energies, at this offset of the numbers, of the worst of all
+ * usable runs that are judged; a NaN is worse than any. */
 static void judge_energy(const struct wb_bundles_results *results, struct wb_verdict *verdicts,
-                         int *n, enum ratio ratio)
+                         int *n, struct wb_verdict verdict, size_t offset)
 {
-    const struct wb_bundles_limits *const limits = &results->campaign->limits;
-    const struct wb_verdict cases[] = {
-        [KINETIC] = {.what = "Largest kinetic over internal energy of a run",
-                     .key = "kinetic_max",
-                     .limit = limits->kinetic},
-        [ARTIFICIAL] = {.what = "Largest artificial over internal energy of a run",
-                        .key = "artificial_max",
-                        .limit = limits->artificial},
-        [IMBALANCE] = {.what = "Largest imbalance of energy over the external work of a run",
-                       .key = "imbalance_max",
-                       .limit = limits->imbalance},
-    };
-    struct wb_verdict verdict = cases[ratio];
     for (int i = 0; i < results->campaign->n_runs; i++) {
         const struct wb_bundles_result *const run = wb_bundles_results_usable(results, i);
-        const double value = run ? ratio_of(&run->numbers, ratio) : (double)NAN;
-        if (!run || !results->campaign->runs[i].judged || (verdict.label && value <= verdict.value))
+        if (!run || !results->campaign->runs[i].judged)
+            continue;
+        const double value = *(const double *)((const char *)&run->numbers + offset);
+        if (verdict.label && value <= verdict.value)
             continue;
         verdict.value = value;
         verdict.label = results->campaign->runs[i].name;
@@ -115,33 +96,37 @@ int wb_bundles_results_judge(const struct wb_bundles_results *results,
 {
     const struct wb_bundles *const campaign = results->campaign;
     const struct wb_bundles_limits *const limits = &campaign->limits;
+    const struct {
+        struct wb_verdict verdict;
+        size_t offset; /* of its ratio in the numbers of a run */
+    } energies[] = {
+        {{"Largest kinetic over internal energy of a run", "kinetic_max", .limit = limits->kinetic},
+         offsetof(struct wb_bundles_numbers, kinetic)},
+        {{"Largest artificial over internal energy of a run", "artificial_max",
+          .limit = limits->artificial},
+         offsetof(struct wb_bundles_numbers, artificial)},
+        {{"Largest imbalance of energy over the external work of a run", "imbalance_max",
+          .limit = limits->imbalance},
+         offsetof(struct wb_bundles_numbers, imbalance)},
+    };
     int n = 0;
     for (int i = 0; i < campaign->n_bundles; i++) {
-        const struct wb_bundles_bundle *const bundle = &campaign->bundles[i];
-        const struct wb_bundles_result *const run =
-            wb_bundles_results_usable(results, bundle->dynamic);
-        const struct wb_verdict rms = {"RMS from the published curve, over its largest force",
-                                       "rms_max",
-                                       bundle->label,
-                                       run ? run->rms : (double)NAN,
-                                       limits->rms,
-                                       false};
-        if (run && run->published && isfinite(run->rms))
-            wb_verdict_add(verdicts, &n, &rms);
+        const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, i);
+        struct wb_verdict rms = {"RMS from the published curve, over its largest force", "rms_max",
+                                 campaign->bundles[i].label, .limit = limits->rms};
+        if (!run || !run->published || !isfinite(run->rms))
+            continue;
+        rms.value = run->rms;
+        wb_verdict_add(verdicts, &n, &rms);
     }
-    judge_energy(results, verdicts, &n, KINETIC);
-    judge_energy(results, verdicts, &n, ARTIFICIAL);
-    judge_energy(results, verdicts, &n, IMBALANCE);
+    for (size_t i = 0; i < WB_COUNT(energies); i++)
+        judge_energy(results, verdicts, &n, energies[i].verdict, energies[i].offset);
     for (int i = 0; i < campaign->n_bundles; i++) {
-        const double value = wb_bundles_results_cost(results, i);
-        const struct wb_verdict cost = {"CPU seconds of the 1D beam over those of the "
-                                        "bundle",
-                                        "cost_max",
-                                        campaign->bundles[i].label,
-                                        value,
-                                        limits->cost,
-                                        false};
-        if (!isnan(value))
+        const struct wb_verdict cost = {"CPU seconds of the 1D beam over those of the bundle",
+                                        "cost_max", campaign->bundles[i].label,
+                                        .value = wb_bundles_results_cost(results, i),
+                                        .limit = limits->cost};
+        if (!isnan(cost.value))
             wb_verdict_add(verdicts, &n, &cost);
     }
     return n;
@@ -167,35 +152,19 @@ static void judge(struct wb_bundles_results *results)
 
 /* --- the fit --- */
 
-/* The fitted beam's forces on the grid of the run's curve. */
-static enum wb_status compute_fitted(struct wb_bundles_fit *fit,
-                                     const struct wb_bundles_result *run,
-                                     const struct wb_calibrate_settings *settings,
-                                     struct wb_reason *why)
-{
-    const struct wb_computed_settings how = {
-        .n_elements = settings->n_elements, .n_fibres = settings->n_fibres, .why = why};
-    struct wb_computed *computed;
-    int n_reached;
-    fit->force = wb_memory_new((size_t)run->curve.n, sizeof *fit->force);
-    WB_TRY(
-        wb_computed_create(&computed, &run->simulation.dataset.info, &fit->result.material, &how));
-    const enum wb_status status = wb_computed_curve(computed, &fit->result.material, run->curve.n,
-                                                    run->curve.step, fit->force, &n_reached);
-    wb_computed_destroy(computed);
-    return status;
-}
-
 static enum wb_status calibrate(struct wb_bundles_fit *fit, const struct wb_bundles_result *run,
                                 const struct wb_calibrate_settings *settings, struct wb_reason *why)
 {
     const struct wb_dataset *const dataset = &run->simulation.dataset;
     struct wb_calibrate_settings own = *settings;
+    int n_reached;
     own.progress = wb_campaign_go_on;
     WB_TRY(wb_calibrate_run(&fit->result, &dataset, 1, &own, why));
     fit->rigidity = wb_bundles_results_rigidity(fit->result.material.youngs_modulus,
                                                 dataset->info.outer_diameter);
-    const enum wb_status status = compute_fitted(fit, run, settings, why);
+    fit->force = wb_memory_new((size_t)run->curve.n, sizeof *fit->force);
+    const enum wb_status status = wb_bundles_run_beam(fit->force, &n_reached, run, &dataset->info,
+                                                      &fit->result.material, settings, why);
     if (status != WB_OK)
         wb_calibrate_result_release(&fit->result);
     return status;
@@ -203,10 +172,8 @@ static enum wb_status calibrate(struct wb_bundles_fit *fit, const struct wb_bund
 
 static void fit_bundle(struct wb_bundles_results *results, int index)
 {
-    const struct wb_bundles *const campaign = results->campaign;
     struct wb_bundles_fit *const fit = &results->fits[index];
-    const struct wb_bundles_result *const run =
-        wb_bundles_results_usable(results, campaign->bundles[index].dynamic);
+    const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, index);
     fit->state = WB_SIMULATION_MISSING;
     if (!run) {
         wb_text_append(&fit->problem, "the bundle's dataset that it builds on is missing");
@@ -214,7 +181,7 @@ static void fit_bundle(struct wb_bundles_results *results, int index)
     }
     const struct wb_reasons reasons = {&fit->problem, NULL, NULL};
     struct wb_reason why = {.text = ""};
-    const enum wb_status status = calibrate(fit, run, &campaign->head.fit, &why);
+    const enum wb_status status = calibrate(fit, run, &results->campaign->head.fit, &why);
     fit->state = status == WB_OK ? WB_SIMULATION_USABLE : WB_SIMULATION_REFUSED;
     if (status != WB_OK)
         wb_reasons_fail(&reasons, status, &why);
@@ -270,15 +237,14 @@ enum wb_status wb_bundles_results_load(void *context, const void *of)
 {
     struct wb_bundles_results *const results = context;
     const struct wb_bundles *const campaign = of;
+    const struct wb_simulation_reader reader = {.take = NULL};
     results->campaign = campaign;
     results->outcome.campaign = &campaign->head;
     results->outcome.n_steps = campaign->n_bundles;
     for (int i = 0; i < campaign->n_runs; i++)
         wb_bundles_run_load(&results->runs[i], &campaign->runs[i]);
-    for (int i = 0; i < campaign->n_bundles; i++) {
-        const struct wb_bundles_bundle *const bundle = &campaign->bundles[i];
-        wb_bundles_run_load_rod(&results->rods[i], bundle);
-    }
+    for (int i = 0; i < campaign->n_bundles; i++)
+        wb_simulation_load(&results->rods[i].simulation, &campaign->bundles[i].rod, &reader);
     return WB_OK;
 }
 

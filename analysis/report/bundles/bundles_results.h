@@ -44,6 +44,9 @@ wb_simulation_list wb_bundles_results_list;
 /* A run's result (index -1: none) that is usable, else NULL. */
 const struct wb_bundles_result *wb_bundles_results_usable(const struct wb_bundles_results *results,
                                                           int run);
+/* The same of a bundle's run with decaying friction. */
+const struct wb_bundles_result *wb_bundles_results_dynamic(const struct wb_bundles_results *results,
+                                                           int bundle);
 /* Whether one of a bundle's runs is usable, or one of any bundle of a group. */
 bool wb_bundles_results_either(const struct wb_bundles_results *results,
                                const struct wb_bundles_bundle *bundle);

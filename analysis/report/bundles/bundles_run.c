@@ -30,7 +30,6 @@ static void read_numbers(struct wb_bundles_result *result)
     n->steps = wb_simulation_number(simulation, "steps");
     n->time_step = wb_simulation_number(simulation, "time_step_s");
     n->duration = wb_simulation_number(simulation, "duration_s");
-    n->wall_s = wb_simulation_number(simulation, "wall_s");
     n->ns = wb_simulation_number(simulation, "ns_per_element_step");
     n->kinetic = wb_simulation_number(largest, "kinetic_over_internal");
     n->artificial = wb_simulation_number(largest, "artificial_over_internal");
@@ -38,14 +37,6 @@ static void read_numbers(struct wb_bundles_result *result)
     n->strain = wb_simulation_number(largest, "strain");
     n->penetration = wb_simulation_number(largest, "penetration_mm") * WB_MM;
     (void)wb_json_get_boolean(largest, "beyond_strain_limit", &result->beyond);
-    (void)wb_json_get_boolean(simulation, "duration_chosen", &result->kinetic_choice);
-}
-
-static void clear_numbers(struct wb_bundles_numbers *n)
-{
-    const double none = (double)NAN;
-    *n = (struct wb_bundles_numbers){none, none, none, none, none, none,
-                                     none, none, none, none, none, none};
 }
 
 /* --- energies.csv --- */
@@ -73,7 +64,6 @@ static bool parse_energy(char *line, struct wb_bundles_energy *energy)
         .external = v[3],
         .kinetic = v[4],
         .internal = v[5] + v[6] + v[7] + v[8],
-        .plastic = v[6],
         .friction = v[9],
         .artificial = v[10],
     };
@@ -131,29 +121,11 @@ static enum wb_status take_bundle(void *context, struct wb_reason *why)
     return wb_surface_read(&loading->result->surface, loading->folder, why);
 }
 
-static enum wb_status take_beam(void *context, struct wb_reason *why)
-{
-    const struct loading *const loading = context;
-    (void)why;
-    read_numbers(loading->result);
-    return WB_OK;
-}
-
 void wb_bundles_run_load(struct wb_bundles_result *result, const struct wb_bundles_run *run)
 {
     struct loading loading = {result, run->dataset.path};
     const struct wb_simulation_reader reader = {take_bundle, &loading};
-    clear_numbers(&result->numbers);
     wb_simulation_load(&result->simulation, &run->dataset, &reader);
-}
-
-void wb_bundles_run_load_rod(struct wb_bundles_result *result,
-                             const struct wb_bundles_bundle *bundle)
-{
-    struct loading loading = {result, bundle->rod.path};
-    const struct wb_simulation_reader reader = {take_beam, &loading};
-    clear_numbers(&result->numbers);
-    wb_simulation_load(&result->simulation, &bundle->rod, &reader);
 }
 
 void wb_bundles_run_release(struct wb_bundles_result *result)
@@ -169,21 +141,18 @@ void wb_bundles_run_release(struct wb_bundles_result *result)
 
 /* --- beside the published curve --- */
 
-static enum wb_status compute_published(struct wb_bundles_result *result,
-                                        const struct wb_wire *beam,
-                                        const struct wb_calibrate_settings *fit,
-                                        struct wb_reason *why)
+enum wb_status wb_bundles_run_beam(double *force, int *n_reached,
+                                   const struct wb_bundles_result *result,
+                                   const struct wb_test_info *info,
+                                   const struct wb_material *material,
+                                   const struct wb_calibrate_settings *fit, struct wb_reason *why)
 {
-    const struct wb_curve *const curve = &result->curve;
     const struct wb_computed_settings how = {
         .n_elements = fit->n_elements, .n_fibres = fit->n_fibres, .why = why};
-    struct wb_test_info info = result->simulation.dataset.info;
     struct wb_computed *computed;
-    info.outer_diameter = beam->outer_diameter;
-    info.mass_per_length = wb_wire_mass_per_length(beam);
-    WB_TRY(wb_computed_create(&computed, &info, &beam->material, &how));
-    const enum wb_status status = wb_computed_curve(
-        computed, &beam->material, curve->n, curve->step, result->published, &result->n_published);
+    WB_TRY(wb_computed_create(&computed, info, material, &how));
+    const enum wb_status status = wb_computed_curve(computed, material, result->curve.n,
+                                                    result->curve.step, force, n_reached);
     wb_computed_destroy(computed);
     return status;
 }
@@ -203,7 +172,11 @@ enum wb_status wb_bundles_run_compare(struct wb_bundles_result *result,
     const int n = result->curve.n;
     result->published = wb_memory_new((size_t)n, sizeof *result->published);
     result->error = wb_memory_new((size_t)n, sizeof *result->error);
-    WB_TRY(compute_published(result, beam, fit, why));
+    struct wb_test_info info = dataset->info;
+    info.outer_diameter = beam->outer_diameter;
+    info.mass_per_length = wb_wire_mass_per_length(beam);
+    WB_TRY(wb_bundles_run_beam(result->published, &result->n_published, result, &info,
+                               &beam->material, fit, why));
     if (result->n_published < n)
         return WB_OK;
     result->published_max = 0.0;

@@ -1,69 +1,9 @@
-/* The section model beside the explicit one: a table of the bundles' runs, and their curves. */
+/* The section model beside the explicit one: a table of the bundles' runs. */
 #include <math.h>
-#include <stdio.h>
 
 #include "analysis/report/bundles/bundles_kind.h"
 #include "analysis/report/pages.h"
 #include "base/units.h"
-
-/* --- curves --- */
-
-static const struct wb_figure_style section_style = {.colour = WB_PALETTE_INK, .width = 1.3};
-
-/* Of the run with constant friction, where both models have the same one, else of the other. */
-static int shown_run(const struct wb_bundles_results *results,
-                     const struct wb_bundles_bundle *bundle)
-{
-    return wb_bundles_results_usable(results, bundle->constant) &&
-                   wb_bundles_results_section(results, bundle->constant)
-               ? bundle->constant
-               : bundle->dynamic;
-}
-
-static void add_bundle(struct wb_figure *figure, const struct wb_bundles_results *results,
-                       const struct wb_bundles_bundle *bundle, bool first)
-{
-    const int run = shown_run(results, bundle);
-    const struct wb_bundles_result *const explicit = wb_bundles_results_usable(results, run);
-    const struct wb_bundles_section *const section = wb_bundles_results_section(results, run);
-    struct wb_panel *const panel = wb_figure_add_panel(figure);
-    double largest = section->curve.max_force;
-    wb_figures_set_title(panel, bundle->label);
-    wb_figure_set_axes(panel, "Deflection <i>\xce\xb4</i> (mm)", first ? "Force (N)" : "");
-    if (explicit) {
-        largest = fmax(largest, explicit->curve.max_force);
-        wb_figures_add_curve(panel, "explicit 3D", &explicit->curve, explicit->curve.force, 1.0,
-                             &wb_figures_reference_style);
-    }
-    /* Room above for the legend, so that the panels are alike. */
-    wb_figure_set_y_range(panel, 0.0, 1.25 * largest);
-    wb_figures_add_curve(panel, "section model", &section->curve, section->curve.force, 1.0,
-                         &section_style);
-}
-
-enum wb_status wb_bundles_section_draw(struct wb_figures_item *item)
-{
-    const struct wb_bundles_results *const results = item->results;
-    const struct wb_bundles_group *const group = &results->campaign->groups[item->index];
-    char name[64];
-    snprintf(name, sizeof name, "section-model-%d", item->index + 1);
-    for (int i = group->first; i < group->first + group->n; i++) {
-        const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[i];
-        if (!wb_bundles_results_section(results, shown_run(results, bundle)))
-            continue;
-        const bool first = !item->figure;
-        if (first) {
-            WB_TRY(wb_figures_start_simulation(&item->figure, name, 190.0));
-            wb_text_append(&item->caption,
-                           "Force over deflection of the section model and of the explicit one, "
-                           "with the same constant friction where there is such a run.");
-        }
-        add_bundle(item->figure, results, bundle, first);
-    }
-    return WB_OK;
-}
-
-/* --- the table --- */
 
 static void put_row(struct wb_document_table *table, const struct wb_bundles_results *results,
                     int run)
@@ -126,10 +66,10 @@ void wb_bundles_section_put(struct wb_document *document, const struct wb_bundle
         document,
         "RMS: difference from the explicit curve, over its largest force. Friction: the static "
         "model has no rate and uses the geometric mean of a friction that decays. <i>EI</i>: of "
-        "the elastic "
-        "bundle as a beam of this length <i>L</i> and these ends, <i>F L</i><sup>3</sup>/3<i>\xce"
-        "\xb4</i>; a short one also deforms in shear. Where a tape on a circle comes off the "
-        "wires, the section model is too stiff.",
+        "the elastic bundle as a beam of this length <i>L</i> and these ends, "
+        "<i>F L</i><sup>3</sup>/3<i>\xce\xb4</i>; a short one also deforms in shear. Where a tape "
+        "on "
+        "a circle comes off the wires, the section model is too stiff.",
         9, columns);
     for (int i = 0; i < campaign->n_bundles; i++) {
         put_row(table, results, campaign->bundles[i].dynamic);
