@@ -1,7 +1,6 @@
 #include "analysis/report/machines/machines_cable.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 
@@ -97,7 +96,6 @@ enum wb_status wb_machines_cable_compute(struct wb_machines_cable_results *resul
     const struct wb_machines_cable *const cable = &campaign->cable;
     const struct input in = {campaign, groups, 1.0};
     int n_wires = 0;
-    memset(results, 0, sizeof *results);
     for (int s = 0; s < cable->n_wires; s++)
         n_wires += groups[cable->wires[s]].n_usable;
     results->n_layers = cable->n_layers;

@@ -31,6 +31,7 @@ struct wb_machines_cable_results {
     struct wb_machines_layer layers[WB_MACHINES_LAYERS];
 };
 
+/* Fills zeroed results. */
 WB_MUST_CHECK enum wb_status
 wb_machines_cable_compute(struct wb_machines_cable_results *results,
                           const struct wb_machines *campaign,

@@ -1,4 +1,5 @@
-#include "analysis/report/machines/machines_cable_view.h"
+/* A cable and its layers in a report: figures, a chapter, numbers. */
+#include "analysis/report/machines/machines_kind.h"
 
 #include <math.h>
 
@@ -178,9 +179,8 @@ static void put_places(struct wb_document *document, const struct wb_machines_re
         document,
         "<i>\xcf\x87</i> = (<i>M</i> \xe2\x88\x92 <i>M</i><sub>sliding</sub>) / "
         "(<i>M</i><sub>bonded</sub> \xe2\x88\x92 <i>M</i><sub>sliding</sub>): 0 where the wires "
-        "slide "
-        "freely, 1 where they are bonded; with its interval over tests and series, with the wires "
-        "of one series alone, and with half and twice the force at which a test begins.",
+        "slide freely, 1 where they are bonded; with its interval over tests and series, with the "
+        "wires of one series alone, and with half and twice the force at which a test begins.",
         (int)WB_COUNT(columns), columns);
     for (int i = 0; i < results->cable.n_layers; i++) {
         const struct wb_machines_layer *const layer = &results->cable.layers[i];

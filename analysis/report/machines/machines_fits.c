@@ -69,10 +69,9 @@ int wb_machines_fits_count_wires(const struct wb_machines *campaign)
 }
 
 void wb_machines_fits_compute(struct wb_machines_fits *fits, const struct wb_machines *campaign,
-                              const struct wb_machines_group_results *groups,
-                              const struct wb_machines_fits_order *order)
+                              const struct wb_machines_group_results *groups, int n_threads,
+                              wb_kind_progress *progress, void *context)
 {
-    memset(fits, 0, sizeof *fits);
     if (!campaign->calibrates)
         return;
     fits->fits = wb_memory_new((size_t)campaign->n_groups, sizeof *fits->fits);
@@ -80,11 +79,29 @@ void wb_machines_fits_compute(struct wb_machines_fits *fits, const struct wb_mac
         if (!is_first_of_its_wire(campaign, g))
             continue;
         struct wb_machines_fit *const fit = &fits->fits[fits->n++];
+        char what[100];
         fit->first = g;
-        compute_wire(fit, campaign, groups, order->n_threads);
-        if (order->report)
-            order->report(order->context, fits->n, campaign->groups[g].piece.wire);
+        compute_wire(fit, campaign, groups, n_threads);
+        snprintf(what, sizeof what, "calibrated %.64s", campaign->groups[g].piece.wire);
+        if (progress)
+            progress(context, campaign->n_groups + fits->n, what);
     }
+}
+
+bool wb_machines_fits_is_biased(const struct wb_machines_fit *fit)
+{
+    /* A smaller bias is hidden by the scatter of the tests. */
+    return fit->is_validated && !(fit->left_out.bias <= 0.7 * fit->left_out.scatter);
+}
+
+int wb_machines_fits_count_unconverged(const struct wb_machines_fit *fit)
+{
+    int n = 0;
+    for (int i = 0; fit->is_fitted && i < fit->calibration.n_members; i++) {
+        const struct wb_three_point_member *const member = &fit->calibration.members[i];
+        n += member->is_fitted && !member->fit.is_converged;
+    }
+    return n;
 }
 
 int wb_machines_fits_list(const struct wb_machines_fit *fit, const struct wb_machines *campaign,

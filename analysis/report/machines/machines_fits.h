@@ -4,6 +4,7 @@
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_FITS_H
 
 #include "analysis/calibration/properties/properties.h"
+#include "analysis/report/kind.h"
 #include "analysis/report/machines/machines.h"
 #include "analysis/report/machines/machines_test.h"
 #include "analysis/validation/left_out.h"
@@ -25,16 +26,19 @@ struct wb_machines_fits {
 /* Number of wires to calibrate. */
 int wb_machines_fits_count_wires(const struct wb_machines *campaign);
 
-struct wb_machines_fits_order {
-    int n_threads; /* 0: as many as there are processors */
-    void (*report)(void *context, int n_done, const char *wire); /* after each wire; NULL: none */
-    void *context;
-};
-
-/* After Ctrl-C, the remaining wires are not calibrated. */
+/* Fills zeroed fits, with progress after each wire: its steps follow those of the groups.
+ * `n_threads` 0: as many as there are processors. After Ctrl-C, the remaining wires are not
+ * calibrated. */
 void wb_machines_fits_compute(struct wb_machines_fits *fits, const struct wb_machines *campaign,
-                              const struct wb_machines_group_results *groups,
-                              const struct wb_machines_fits_order *order);
+                              const struct wb_machines_group_results *groups, int n_threads,
+                              wb_kind_progress *progress, void *context);
+
+/* Whether the law of a wire differs from the tests left out by more than 0.7 of their standard
+ * deviation. */
+bool wb_machines_fits_is_biased(const struct wb_machines_fit *fit);
+
+/* Number of tests of a calibrated wire whose fits did not converge. */
+int wb_machines_fits_count_unconverged(const struct wb_machines_fit *fit);
 
 /* Lists the files of the tests of a fit, at most WB_PROPERTIES_MOST_DATASETS; returns their number.
  */

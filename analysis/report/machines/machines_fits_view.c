@@ -1,4 +1,5 @@
-#include "analysis/report/machines/machines_fits_view.h"
+/* Calibrated wires and tests left out in a report: figures, a chapter, numbers. */
+#include "analysis/report/machines/machines_kind.h"
 
 #include <math.h>
 
@@ -7,18 +8,10 @@
 #include "analysis/report/pdf.h"
 #include "base/units.h"
 
-/* A bias below this part of s is hidden by the scatter of the tests. */
-static const double most_bias = 0.7;
-
 static const char *wire_of(const struct wb_machines_results *results,
                            const struct wb_machines_fit *fit)
 {
     return results->campaign->groups[fit->first].piece.wire;
-}
-
-bool wb_machines_fits_is_biased(const struct wb_machines_fit *fit)
-{
-    return fit->is_validated && !(fit->left_out.bias <= most_bias * fit->left_out.scatter);
 }
 
 /* --- figures --- */
@@ -81,15 +74,6 @@ static void put_estimate(struct wb_document_table *table, const struct wb_estima
                         wb_pages_decimals(e->candidates_high / unit));
 }
 
-/* Number of fits that did not converge. */
-static int count_unconverged(const struct wb_three_point_calibration *c)
-{
-    int n = 0;
-    for (int i = 0; i < c->n_members; i++)
-        n += c->members[i].is_fitted && !c->members[i].fit.is_converged;
-    return n;
-}
-
 /* Lists why a wire was not fitted or validated, and why single tests were not fitted. */
 static void put_problems(struct wb_document *document, const struct wb_machines_results *results,
                          const struct wb_machines_fit *fit)
@@ -108,7 +92,7 @@ static void put_problems(struct wb_document *document, const struct wb_machines_
 static void put_counts(struct wb_document_table *table, const struct wb_machines_fit *fit)
 {
     const struct wb_three_point_calibration *const c = &fit->calibration;
-    const int unconverged = count_unconverged(c);
+    const int unconverged = wb_machines_fits_count_unconverged(fit);
     wb_pages_cell(table, c->n_fitted < fit->n ? WB_TONE_WARNING : WB_TONE_PLAIN, "%d of %d",
                   c->n_fitted, fit->n);
     if (unconverged > 0)
@@ -208,9 +192,8 @@ static void put_left_out(struct wb_document *document, const struct wb_machines_
         document,
         "Each test is left out in turn. Model: RMS difference of the law of the other tests from "
         "it, pooled. Scatter alone: (<i>n</i>/(<i>n</i> \xe2\x88\x92 1))<sup>1/2</sup> <i>s</i>, "
-        "the "
-        "difference of the others' mean curve from it. Bias: RMS difference of the law from the "
-        "mean of the others; red above 0.7 <i>s</i>.",
+        "the difference of the others' mean curve from it. Bias: RMS difference of the law from "
+        "the mean of the others; red above 0.7 <i>s</i>.",
         (int)WB_COUNT(columns), columns);
     for (int i = 0; i < results->fits.n; i++) {
         const struct wb_machines_fit *const fit = &results->fits.fits[i];

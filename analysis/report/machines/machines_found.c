@@ -1,10 +1,9 @@
-#include "analysis/report/machines/machines_found.h"
+#include "analysis/report/machines/machines_kind.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "analysis/report/found.h"
-#include "analysis/report/machines/machines_fits_view.h"
 #include "analysis/report/pages.h"
 #include "base/units.h"
 
@@ -141,14 +140,6 @@ static void add_layer(struct wb_found *found, const struct wb_machines_results *
 
 /* --- checks --- */
 
-static int count_unconverged(const struct wb_three_point_calibration *c)
-{
-    int n = 0;
-    for (int i = 0; i < c->n_members; i++)
-        n += c->members[i].is_fitted && !c->members[i].fit.is_converged;
-    return n;
-}
-
 /* Adds the bias of each law against tests left out, and the fits that did not converge. */
 static void add_checks(struct wb_found *found, const struct wb_machines_results *results)
 {
@@ -173,7 +164,7 @@ static void add_checks(struct wb_found *found, const struct wb_machines_results 
             wb_text_append(&text, " could not be validated by leaving tests out.");
         }
         wb_found_add(found, WB_FOUND_FAILED, &text);
-        const int n = fit->is_fitted ? count_unconverged(&fit->calibration) : 0;
+        const int n = wb_machines_fits_count_unconverged(fit);
         if (n > 0) {
             wb_text_append(&text, "%d %s of ", n, wb_pages_plural(n, "fit", "fits"));
             append_wire(&text, results, fit);

@@ -5,9 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/report/machines/machines_cable_view.h"
-#include "analysis/report/machines/machines_fits_view.h"
-#include "analysis/report/machines/machines_found.h"
 #include "analysis/report/numbers.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"

@@ -8,4 +8,26 @@
 /* Campaign and results: struct wb_machines, struct wb_machines_results. */
 extern const struct wb_kind wb_machines_kind;
 
+/* --- its parts --- */
+
+/* The first page, without its figure. */
+void wb_machines_found_put(struct wb_document *document, const struct wb_machines_results *results);
+
+/* A cable and its layers: a figure of each layered group as of struct wb_figures_row, a chapter,
+ * numbers; nothing where the campaign has no cable. */
+int wb_machines_cable_count(const void *results);
+enum wb_status wb_machines_cable_draw(struct wb_figures_item *item);
+void wb_machines_cable_put(struct wb_document *document, const struct wb_machines_results *results,
+                           const struct wb_figures *drawn);
+void wb_machines_cable_put_json(struct wb_json *root, const struct wb_machines_results *results);
+void wb_machines_cable_print(FILE *out, const struct wb_machines_results *results);
+
+/* The same of the calibrated wires and the tests left out, a figure of each wire; nothing where the
+ * campaign does not calibrate. */
+int wb_machines_fits_count(const void *results);
+enum wb_status wb_machines_fits_draw(struct wb_figures_item *item);
+void wb_machines_fits_put(struct wb_document *document, const struct wb_machines_results *results,
+                          const struct wb_figures *drawn);
+void wb_machines_fits_put_json(struct wb_json *root, const struct wb_machines_results *results);
+
 #endif

@@ -1,7 +1,6 @@
 #include "analysis/report/machines/machines_results.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,7 +59,6 @@ enum wb_status wb_machines_results_load(void *context, const void *of)
 {
     struct wb_machines_results *const results = context;
     const struct wb_machines *const campaign = of;
-    memset(results, 0, sizeof *results);
     results->campaign = campaign;
     results->outcome.campaign = &campaign->head;
     results->has_folder = !campaign->environment[0] || getenv(campaign->environment);
@@ -150,45 +148,23 @@ static void compute_group(const struct wb_machines_group *group,
     }
 }
 
-struct reporting {
-    int n_before;
-    wb_kind_progress *progress;
-    void *context;
-};
-
-static void report_wire(void *context, int n_done, const char *wire)
-{
-    const struct reporting *const reporting = context;
-    char what[100];
-    snprintf(what, sizeof what, "calibrated %.64s", wire);
-    reporting->progress(reporting->context, reporting->n_before + n_done, what);
-}
-
 enum wb_status wb_machines_results_compute(void *context, int n_threads, wb_kind_progress *progress,
                                            void *progress_context)
 {
     struct wb_machines_results *const results = context;
     const struct wb_machines *const campaign = results->campaign;
-    struct reporting reporting = {campaign->n_groups, progress, progress_context};
-    const struct wb_machines_fits_order order = {n_threads, progress ? report_wire : NULL,
-                                                 &reporting};
     results->outcome.n_usable = 0;
-    for (int g = 0; g < campaign->n_groups; g++) {
-        if (wb_interrupted()) {
-            results->outcome.interrupted = true;
-            return WB_OK;
-        }
+    for (int g = 0; g < campaign->n_groups && !wb_interrupted(); g++) {
         compute_group(&campaign->groups[g], &results->groups[g]);
         results->outcome.n_usable += results->groups[g].n_usable;
         if (progress)
             progress(progress_context, g + 1, campaign->groups[g].label);
     }
-    WB_TRY(wb_machines_cable_compute(&results->cable, campaign, results->groups));
-    wb_machines_fits_compute(&results->fits, campaign, results->groups, &order);
-    if (wb_interrupted()) {
-        results->outcome.interrupted = true;
-        return WB_OK;
-    }
+    if (!wb_interrupted())
+        WB_TRY(wb_machines_cable_compute(&results->cable, campaign, results->groups));
+    wb_machines_fits_compute(&results->fits, campaign, results->groups, n_threads, progress,
+                             progress_context);
+    results->outcome.interrupted = wb_interrupted();
     results->outcome.is_complete = results->outcome.n_usable == results->outcome.n_wanted;
     return WB_OK;
 }

@@ -3,11 +3,8 @@
 #ifndef WB_ANALYSIS_REPORT_MACHINES_MACHINES_RESULTS_H
 #define WB_ANALYSIS_REPORT_MACHINES_MACHINES_RESULTS_H
 
-#include "analysis/report/kind.h"
-#include "analysis/report/machines/machines.h"
 #include "analysis/report/machines/machines_cable.h"
 #include "analysis/report/machines/machines_fits.h"
-#include "analysis/report/machines/machines_test.h"
 
 struct wb_machines_results {
     struct wb_kind_outcome outcome;
@@ -18,10 +15,8 @@ struct wb_machines_results {
     struct wb_machines_fits fits;
 };
 
-/* As wb_kind_load, wb_kind_compute and wb_kind_release. */
-enum wb_status wb_machines_results_load(void *results, const void *campaign);
-enum wb_status wb_machines_results_compute(void *results, int n_threads, wb_kind_progress *progress,
-                                           void *context);
-void wb_machines_results_release(void *results);
+wb_kind_load wb_machines_results_load;
+wb_kind_compute wb_machines_results_compute;
+wb_kind_release wb_machines_results_release;
 
 #endif
