@@ -82,6 +82,7 @@ struct wb_predictions_verdict {
     struct wb_dataset dataset;   /* of a usable one, as all that follows */
     const struct wb_bands_case *against;
     struct wb_predictions_place places[WB_PREDICTIONS_PLACES];
+    int n_outside;     /* places outside their bands */
     const char *words; /* judgement from all places */
 };
 

@@ -137,16 +137,6 @@ static void add_case(struct wb_found *found, const char *label, const struct wb_
     wb_found_add(found, WB_FOUND_RESULT, &text);
 }
 
-/* Whether a number of a test lies outside its band. */
-static bool is_outside(const struct wb_predictions_verdict *verdict)
-{
-    bool outside = false;
-    for (int k = 0; k < WB_PREDICTIONS_PLACES; k++)
-        outside |= verdict->places[k].side == WB_PREDICTIONS_BELOW ||
-                   verdict->places[k].side == WB_PREDICTIONS_ABOVE;
-    return outside;
-}
-
 /* Tests of a bundle beside the bands; returns how many there are. */
 static int add_tests_of(struct wb_found *found, const struct wb_predictions_bundle *bundle,
                         const struct wb_predictions_prediction *of)
@@ -163,7 +153,7 @@ static int add_tests_of(struct wb_found *found, const struct wb_predictions_bund
         wb_text_append(&text, " (%s) beside the band of 90 %%: ", origin_of(&verdict->dataset));
         wb_text_append_escaped(&text, verdict->words);
         wb_text_append(&text, ".");
-        wb_found_add(found, is_outside(verdict) ? WB_FOUND_FAILED : WB_FOUND_PASSED, &text);
+        wb_found_add(found, verdict->n_outside > 0 ? WB_FOUND_FAILED : WB_FOUND_PASSED, &text);
     }
     return n;
 }
@@ -263,10 +253,11 @@ static void put_found(struct wb_document *document, const struct wb_predictions_
     wb_found_put(&found, document);
 }
 
+/* A band; NULL: there is none. */
 static void put_interval(struct wb_document_table *table, const struct wb_bands_interval *band,
                          int decimals)
 {
-    if (isfinite(band->median))
+    if (band && isfinite(band->median))
         wb_pages_cell(table, WB_TONE_PLAIN, "%.*f (%.*f to %.*f)", decimals, band->median, decimals,
                       band->wide_low, decimals, band->wide_high);
     else
@@ -301,8 +292,6 @@ static void put_cases(struct wb_document *document, const struct wb_bands *bands
     for (int i = 0; i < bands->n_cases; i++) {
         const struct wb_bands_case *const c = &bands->cases[i];
         const struct wb_bands_place *const last = c->n_force > 0 ? &c->force[c->n_force - 1] : NULL;
-        const double none = (double)NAN;
-        const struct wb_bands_interval nothing = {none, none, none, none, none};
         wb_document_row(table, false);
         wb_pages_cell_plain(table, WB_TONE_PLAIN, c->variant.name);
         wb_pages_cell(table, WB_TONE_PLAIN, "%d", c->n_wires);
@@ -312,8 +301,8 @@ static void put_cases(struct wb_document *document, const struct wb_bands *bands
                             !(c->layers > 0.0) ? "none"
                             : c->is_round      ? "circle"
                                                : "hull");
-        wb_pages_cell_number(table, last ? last->at / WB_MM : none, 1);
-        put_interval(table, last ? &last->band : &nothing, 3);
+        wb_pages_cell_number(table, last ? last->at / WB_MM : (double)NAN, 1);
+        put_interval(table, last ? &last->band : NULL, 3);
         put_interval(table, &c->springback, 3);
         put_interval(table, &c->residual_curvature_ratio, 3);
         wb_pages_cell(table, c->n_lost > 0 ? WB_TONE_WARNING : WB_TONE_PLAIN, "%d", c->n_lost);

@@ -162,6 +162,21 @@ static enum wb_predictions_side find_side(double measured, const struct wb_bands
                                         : WB_PREDICTIONS_WITHIN;
 }
 
+/* How many of the first n places are on that side of their band. */
+static int count(const struct wb_predictions_place *places, int n, enum wb_predictions_side side)
+{
+    int found = 0;
+    for (int i = 0; i < n; i++)
+        found += places[i].side == side;
+    return found;
+}
+
+static int count_outside(const struct wb_predictions_place places[WB_PREDICTIONS_PLACES])
+{
+    return count(places, WB_PREDICTIONS_PLACES, WB_PREDICTIONS_BELOW) +
+           count(places, WB_PREDICTIONS_PLACES, WB_PREDICTIONS_ABOVE);
+}
+
 static void compare(struct wb_predictions_verdict *verdict, const struct wb_bands_case *against)
 {
     struct wb_predictions_place *const places = verdict->places;
@@ -179,40 +194,32 @@ static void compare(struct wb_predictions_verdict *verdict, const struct wb_band
     places[THIRDS].band = against->springback;
     for (int i = 0; i < WB_PREDICTIONS_PLACES; i++)
         places[i].side = find_side(places[i].measured, &places[i].band);
+    verdict->n_outside = count_outside(places);
     verdict->words = wb_predictions_judge(places);
 }
 
 const char *wb_predictions_judge(const struct wb_predictions_place places[WB_PREDICTIONS_PLACES])
 {
-    int n[2] = {0, 0}, known = 0, forces = 0; /* below, above */
-    for (int i = 0; i < WB_PREDICTIONS_PLACES; i++) {
-        const enum wb_predictions_side side = places[i].side;
-        known += side != WB_PREDICTIONS_UNKNOWN;
-        n[0] += side == WB_PREDICTIONS_BELOW;
-        n[1] += side == WB_PREDICTIONS_ABOVE;
-        forces += i < THIRDS && (side == WB_PREDICTIONS_BELOW || side == WB_PREDICTIONS_ABOVE);
-    }
-    const bool below = places[0].side == WB_PREDICTIONS_BELOW &&
-                       places[1].side == WB_PREDICTIONS_BELOW &&
-                       places[2].side == WB_PREDICTIONS_BELOW;
-    const bool above = places[0].side == WB_PREDICTIONS_ABOVE &&
-                       places[1].side == WB_PREDICTIONS_ABOVE &&
-                       places[2].side == WB_PREDICTIONS_ABOVE;
-    if (known == 0)
+    const int n = WB_PREDICTIONS_PLACES;
+    const int below = count(places, THIRDS, WB_PREDICTIONS_BELOW);
+    const int above = count(places, THIRDS, WB_PREDICTIONS_ABOVE);
+    const int outside = count_outside(places);
+    if (count(places, n, WB_PREDICTIONS_UNKNOWN) == n)
         return "nothing of it can be judged: it does not reach where the prediction is";
-    if (n[0] + n[1] == 0)
+    if (outside == 0)
         return "within: model, calibration and measured section agree within their uncertainties";
-    if (below || above)
-        return above ? "stiffer than predicted at every deflection: look at diameter and length "
-                       "first, then at layers and bond"
-                     : "softer than predicted at every deflection: look at diameter and length "
-                       "first, then at layers and bond";
+    if (below == THIRDS || above == THIRDS)
+        return above == THIRDS
+                   ? "stiffer than predicted at every deflection: look at diameter and length "
+                     "first, then at layers and bond"
+                   : "softer than predicted at every deflection: look at diameter and length "
+                     "first, then at layers and bond";
     if (places[0].side == WB_PREDICTIONS_WITHIN && places[2].side == WB_PREDICTIONS_BELOW)
         return "within at first, too soft later: the tape lets go of the wires, or a bond breaks";
-    if (forces == 0)
+    if (below + above == 0)
         return "force within, springback of the deflection outside: the law of the wires beyond "
                "yield, or the bond";
-    if (n[0] + n[1] == 1)
+    if (outside == 1)
         return "one number outside: of ten such numbers one is expected there; test a second "
                "bundle";
     return "some numbers outside, on no one pattern: test a second bundle, and cut this one";
@@ -251,16 +258,6 @@ static void predict(struct wb_predictions_results *results, int index, int n_thr
     }
 }
 
-/* One of four outside is no failure: one of ten is expected outside. */
-static bool is_outside(const struct wb_predictions_verdict *test)
-{
-    int n = 0;
-    for (int k = 0; k < WB_PREDICTIONS_PLACES && test->against; k++)
-        n += test->places[k].side == WB_PREDICTIONS_BELOW ||
-             test->places[k].side == WB_PREDICTIONS_ABOVE;
-    return n > 1;
-}
-
 enum wb_status wb_predictions_results_compute(void *of, int n_threads, wb_kind_progress *progress,
                                               void *context)
 {
@@ -275,9 +272,10 @@ enum wb_status wb_predictions_results_compute(void *of, int n_threads, wb_kind_p
     }
     results->outcome.interrupted = wb_interrupted();
     results->outcome.is_complete = all && results->outcome.n_usable == results->outcome.n_wanted;
+    /* One of four outside is no failure: one of ten is expected outside. */
     for (int b = 0; b < campaign->n_bundles; b++)
         for (int i = 0; i < campaign->bundles[b].n_tests; i++)
-            results->outcome.exceeds_limit |= is_outside(&results->bundles[b].tests[i]);
+            results->outcome.exceeds_limit |= results->bundles[b].tests[i].n_outside > 1;
     return WB_OK;
 }
 
