@@ -54,8 +54,6 @@
 #include "analysis/report/campaign.h"
 #include "analysis/report/draw/figures_bundle.h"
 #include "analysis/report/simulation.h"
-#include "base/file.h"
-#include "base/hash.h"
 #include "base/status.h"
 #include "fe/model/bundle_model.h"
 

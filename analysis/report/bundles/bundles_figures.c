@@ -17,6 +17,10 @@
 static const double millijoule = 1e-3;
 static const double panel_height = 190.0;
 
+enum {
+    LABEL = 400 /* bytes of a bundle's label, escaped */
+};
+
 /* --- lines --- */
 
 /* They lie on the published curve. */
@@ -142,13 +146,12 @@ static enum wb_status draw_forces(struct wb_figures_item *item)
 static void add_error(struct wb_panel *panel, const char *bundle, const char *friction,
                       const struct wb_bundles_result *run, const struct wb_figure_style *style)
 {
-    struct wb_text label = {0};
+    char name[LABEL], label[LABEL + 100];
     if (!run || !run->published || !isfinite(run->rms))
         return;
-    wb_text_append_escaped(&label, bundle);
-    wb_text_append(&label, ", %s: RMS %.4f", friction, run->rms);
-    wb_figures_add_curve(panel, wb_text_string(&label), &run->curve, run->error, 1.0, style);
-    wb_text_release(&label);
+    snprintf(label, sizeof label, "%s, %s: RMS %.4f", wb_pages_escape(name, sizeof name, bundle),
+             friction, run->rms);
+    wb_figures_add_curve(panel, label, &run->curve, run->error, 1.0, style);
 }
 
 static enum wb_status draw_errors(struct wb_figures_item *item)
@@ -271,8 +274,7 @@ static enum wb_status draw_shape(struct wb_figures_item *item)
     const struct wb_bundles *const campaign = results->campaign;
     const struct wb_bundles_bundle *const bundle = &campaign->bundles[item->index];
     const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, item->index);
-    struct wb_text title = {0};
-    char name[64];
+    char name[64], title[LABEL];
     if (!run || run->surface.n == 0)
         return WB_OK;
     char place[48];
@@ -283,16 +285,12 @@ static enum wb_status draw_shape(struct wb_figures_item *item)
         "glass, from the side and its ends from nearby.",
         run->curve.max_deflection / WB_MM,
         wb_pages_paper_figure(place, campaign->groups[bundle->group].figures[WB_BUNDLES_SHAPE]));
-    wb_text_append_escaped(&title, bundle->label);
     snprintf(name, sizeof name, "shape-%d", item->index + 1);
     const struct wb_figures_surface_style style = {
         .width = WB_PDF_WIDTH,
         .most_stress = most_stress(results, &campaign->groups[bundle->group]),
-        .title = wb_text_string(&title)};
-    const enum wb_status status =
-        wb_figures_surface_draw(&item->figure, name, &run->surface, &style);
-    wb_text_release(&title);
-    return status;
+        .title = wb_pages_escape(title, sizeof title, bundle->label)};
+    return wb_figures_surface_draw(&item->figure, name, &run->surface, &style);
 }
 
 /* --- studies --- */
@@ -309,15 +307,13 @@ static void draw_study(struct wb_figure *figure, const struct wb_bundles_results
             wb_bundles_results_usable(results, study->runs[i]);
         const struct wb_figure_style style = {
             .colour = wb_palette_wire(i), .width = 1.2, .dash = dashes[i % 4]};
-        struct wb_text label = {0};
+        char label[6 * sizeof study->labels[0]];
         if (!run)
             continue;
         if (!published)
             add_published(panel, "published", run);
         published = true;
-        wb_text_append_escaped(&label, study->labels[i]);
-        add_run(panel, wb_text_string(&label), run, &style);
-        wb_text_release(&label);
+        add_run(panel, wb_pages_escape(label, sizeof label, study->labels[i]), run, &style);
     }
 }
 
@@ -469,21 +465,17 @@ static enum wb_status add_shapes(struct wb_panel *inset, const struct wb_bundles
 
 static void add_fit(struct wb_panel *panel, const struct wb_bundles_results *results, int index)
 {
-    const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
     const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, index);
     const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
     const struct wb_figure_style solid = solid_style(index), beam = beam_style(index);
-    struct wb_text label = {0};
-    wb_text_append_escaped(&label, bundle->label);
-    wb_text_append(&label, ", 3D");
-    add_run(panel, wb_text_string(&label), run, &solid);
-    wb_text_release(&label);
+    char name[LABEL], label[LABEL + 100];
+    wb_pages_escape(name, sizeof name, results->campaign->bundles[index].label);
+    snprintf(label, sizeof label, "%s, 3D", name);
+    add_run(panel, label, run, &solid);
     if (!fit)
         return;
-    wb_text_append_escaped(&label, bundle->label);
-    wb_text_append(&label, ", 1D: RMS %.4f", fit->result.rms);
-    wb_figures_add_curve(panel, wb_text_string(&label), &run->curve, fit->force, 1.0, &beam);
-    wb_text_release(&label);
+    snprintf(label, sizeof label, "%s, 1D: RMS %.4f", name, fit->result.rms);
+    wb_figures_add_curve(panel, label, &run->curve, fit->force, 1.0, &beam);
 }
 
 /* The RMS of a bundle's run from its published curve; NaN: there is none of either. */
@@ -550,7 +542,7 @@ static enum wb_status draw_found(struct wb_figures_item *item)
         .colour = wb_palette_warning(), .width = 1.0, .dash = WB_DASH_DASHED};
     static const char *const labels[] = {"decaying friction", "constant friction"};
     double x[2][WB_BUNDLES_BUNDLES], y[2][WB_BUNDLES_BUNDLES];
-    char escaped[WB_BUNDLES_BUNDLES][6 * sizeof campaign->bundles[0].label];
+    char escaped[WB_BUNDLES_BUNDLES][LABEL];
     const char *names[WB_BUNDLES_BUNDLES];
     size_t n[2] = {0, 0};
     const int n_bundles = campaign->n_bundles;

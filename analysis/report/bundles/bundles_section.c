@@ -16,15 +16,6 @@ enum {
     MARKERS = 2 /* the shape is not asked for */
 };
 
-static void take(struct wb_bundles_section *section, const struct wb_section_run *computed,
-                 const struct wb_bundle_model *model)
-{
-    section->friction = computed->friction;
-    section->is_mean = computed->is_mean;
-    section->loosens = wb_section_run_loosens(computed, model);
-    memcpy(section->rigidity, computed->rigidity, sizeof section->rigidity);
-}
-
 static enum wb_status average(struct wb_bundles_section *section,
                               const struct wb_section_run *computed,
                               const struct wb_bundle_model *model, double step,
@@ -53,7 +44,10 @@ static enum wb_status compute(struct wb_bundles_section *section,
         status = wb_fail_to(why, WB_ERR_CONVERGENCE, "no equilibrium was found beyond %.4g mm",
                             computed.lost.deflection / WB_MM);
     if (status == WB_OK) {
-        take(section, &computed, model);
+        section->friction = computed.friction;
+        section->is_mean = computed.is_mean;
+        section->loosens = wb_section_run_loosens(&computed, model);
+        memcpy(section->rigidity, computed.rigidity, sizeof section->rigidity);
         status = average(section, &computed, model, step, why);
     }
     wb_section_run_release(&computed);

@@ -83,7 +83,7 @@ enum wb_status wb_machines_cable_draw(struct wb_figures_item *item)
 {
     const struct wb_machines_results *const results = item->results;
     const struct wb_machines_layer *const layer = &results->cable.layers[item->index];
-    char name[32];
+    char name[32], group[400], label[1000];
     if (layer->n == 0)
         return WB_OK;
     snprintf(name, sizeof name, "layer-%d", item->index + 1);
@@ -91,14 +91,11 @@ enum wb_status wb_machines_cable_draw(struct wb_figures_item *item)
     wb_figure_set_footer(item->figure, "measured");
     add_moments(wb_figure_add_panel(item->figure), layer);
     add_chi(wb_figure_add_panel(item->figure), results, layer);
-    wb_text_append(&item->caption, "Group ");
-    wb_text_append_escaped(&item->caption, group_of(results, layer)->name);
-    wb_text_append(&item->caption, ", ");
-    wb_text_append_escaped(&item->caption, group_of(results, layer)->label);
-    wb_text_append(
-        &item->caption,
-        ": mean of %d tests with both bounds, and its place <i>\xcf\x87</i> between them.",
-        layer->n);
+    wb_text_append(&item->caption,
+                   "Group %s, %s: mean of %d tests with both bounds, and its place "
+                   "<i>\xcf\x87</i> between them.",
+                   wb_pages_escape(group, sizeof group, group_of(results, layer)->name),
+                   wb_pages_escape(label, sizeof label, group_of(results, layer)->label), layer->n);
     return WB_OK;
 }
 

@@ -31,7 +31,7 @@ enum wb_status wb_machines_fits_draw(struct wb_figures_item *item)
     const struct wb_figure_style model = {wb_palette_wire(1), 1.4, WB_DASH_DASHED, WB_MARKER_NONE,
                                           0.0};
     double x[WB_LEFT_OUT_GRID], y[4][WB_LEFT_OUT_GRID];
-    char name[32];
+    char name[32], wire[400];
     if (!fit->is_validated)
         return WB_OK;
     for (int k = 0; k < WB_LEFT_OUT_GRID; k++) {
@@ -52,12 +52,10 @@ enum wb_status wb_machines_fits_draw(struct wb_figures_item *item)
                        wb_palette_fade(wb_palette_grey(), 0.3));
     wb_figure_add_line(panel, "tests, mean", WB_LEFT_OUT_GRID, x, y[0], &mean);
     wb_figure_add_line(panel, "laws of the others", WB_LEFT_OUT_GRID, x, y[3], &model);
-    wb_text_append(&item->caption, "Wire ");
-    wb_text_append_escaped(&item->caption, wire_of(results, fit));
     wb_text_append(&item->caption,
-                   ": mean of %d tests, and the law of the other tests, mean over the tests left "
-                   "out.",
-                   r->n);
+                   "Wire %s: mean of %d tests, and the law of the other tests, mean over the tests "
+                   "left out.",
+                   wb_pages_escape(wire, sizeof wire, wire_of(results, fit)), r->n);
     return WB_OK;
 }
 

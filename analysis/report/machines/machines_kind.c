@@ -75,7 +75,7 @@ static enum wb_status draw_group(struct wb_figures_item *item)
     const struct wb_machines_results *const results = item->results;
     const struct wb_machines_group *const group = &results->campaign->groups[item->index];
     const struct wb_machines_group_results *const of = &results->groups[item->index];
-    char name[32];
+    char name[32], label[6 * sizeof group->label];
     if (of->n_usable == 0)
         return WB_OK;
     snprintf(name, sizeof name, "group-%d", item->index + 1);
@@ -84,9 +84,8 @@ static enum wb_status draw_group(struct wb_figures_item *item)
     struct wb_panel *const panel = wb_figure_add_panel(item->figure);
     wb_figure_set_axes(panel, "Travel from the first contact (mm)", "Force (mN)");
     wb_figure_set_y_range(panel, 0.0, (double)NAN);
-    wb_text_append(&item->caption, "Force over travel of ");
-    wb_text_append_escaped(&item->caption, group->label);
-    wb_text_append(&item->caption, ", %d of %d tests, span %.4g mm.", of->n_usable, group->n_tests,
+    wb_text_append(&item->caption, "Force over travel of %s, %d of %d tests, span %.4g mm.",
+                   wb_pages_escape(label, sizeof label, group->label), of->n_usable, group->n_tests,
                    group->machine.span / WB_MM);
     add_curves(panel, group, of);
     return WB_OK;

@@ -2,7 +2,6 @@
 #include <math.h>
 
 #include "analysis/report/found.h"
-#include "analysis/report/pages.h"
 #include "analysis/report/simulation_pages.h"
 #include "analysis/report/wires/wires_kind.h"
 #include "base/units.h"
