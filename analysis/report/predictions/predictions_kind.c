@@ -219,12 +219,11 @@ static void put_found(struct wb_document *document, const struct wb_predictions_
                  "<b>Simulations.</b> The bands are computed by the section model from what the "
                  "files of the bundles state. Where a test is compared with a band, its origin is "
                  "given.");
-    if (results->outcome.n_usable < results->outcome.n_wanted)
-        wb_found_say(
-            &found, WB_FOUND_INCOMPLETE,
-            "<b>Incomplete.</b> %d of %d datasets of tests %s missing or cannot be used.",
-            results->outcome.n_wanted - results->outcome.n_usable, results->outcome.n_wanted,
-            wb_pages_plural(results->outcome.n_wanted - results->outcome.n_usable, "is", "are"));
+    const int n_lost = results->outcome.n_wanted - results->outcome.n_usable;
+    if (n_lost > 0)
+        wb_found_say(&found, WB_FOUND_INCOMPLETE,
+                     "<b>Incomplete.</b> %d of %d datasets of tests %s missing or cannot be used.",
+                     n_lost, results->outcome.n_wanted, wb_pages_plural(n_lost, "is", "are"));
     for (int i = 0; i < campaign->n_bundles; i++) {
         const struct wb_predictions_prediction *const of = &results->bundles[i];
         any_test |= campaign->bundles[i].n_tests > 0;
