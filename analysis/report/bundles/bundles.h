@@ -135,9 +135,4 @@ const struct wb_wire *wb_bundles_published(const struct wb_bundles_run *run);
 /* How a run is loaded, for readers: "dead force", "strand, weight". */
 const char *wb_bundles_loading(const struct wb_bundles_run *run);
 
-/* A part of wb_bundles_keys(): the list of runs. */
-WB_MUST_CHECK enum wb_status wb_bundles_run_read(struct wb_bundles *all,
-                                                 const struct wb_config_node *list,
-                                                 const struct wb_config_node *defaults);
-
 #endif

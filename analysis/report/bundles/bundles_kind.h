@@ -24,8 +24,4 @@ wb_kind_json wb_bundles_json_build;
 /* The first page, without its figure. */
 void wb_bundles_found_put(struct wb_document *document, const struct wb_bundles_results *results);
 
-/* The chapter on the section model beside the explicit one. */
-void wb_bundles_section_put(struct wb_document *document, const struct wb_bundles_results *results,
-                            const struct wb_figures *figures);
-
 #endif
