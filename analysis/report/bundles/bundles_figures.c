@@ -478,18 +478,11 @@ static void add_fit(struct wb_panel *panel, const struct wb_bundles_results *res
     wb_figures_add_curve(panel, label, &run->curve, fit->force, 1.0, &beam);
 }
 
-/* The RMS of a bundle's run from its published curve; NaN: there is none of either. */
-static double rms_of(const struct wb_bundles_results *results, int run)
-{
-    const struct wb_bundles_result *const result = wb_bundles_results_usable(results, run);
-    return result && result->published ? result->rms : (double)NAN;
-}
-
 static bool any_published(const struct wb_bundles_results *results)
 {
     bool any = false;
     for (int i = 0; i < results->campaign->n_bundles; i++)
-        any |= isfinite(rms_of(results, results->campaign->bundles[i].dynamic));
+        any |= isfinite(wb_bundles_results_rms(results, results->campaign->bundles[i].dynamic));
     return any;
 }
 
@@ -551,7 +544,8 @@ static enum wb_status draw_found(struct wb_figures_item *item)
     /* From the bottom up, as tables are read from the top down. */
     for (int i = 0; i < n_bundles; i++) {
         const struct wb_bundles_bundle *const bundle = &campaign->bundles[n_bundles - 1 - i];
-        const double rms[2] = {rms_of(results, bundle->dynamic), rms_of(results, bundle->constant)};
+        const double rms[2] = {wb_bundles_results_rms(results, bundle->dynamic),
+                               wb_bundles_results_rms(results, bundle->constant)};
         names[i] = wb_pages_escape(escaped[i], sizeof escaped[i], bundle->label);
         for (int k = 0; k < 2; k++) {
             if (!isfinite(rms[k]))

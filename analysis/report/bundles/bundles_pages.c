@@ -30,16 +30,14 @@ static void put_fact(struct wb_document_table *table, const struct wb_bundles_re
 {
     const struct wb_bundles_bundle *const bundle = &results->campaign->bundles[index];
     const struct wb_bundles_result *const dynamic = wb_bundles_results_dynamic(results, index);
-    const struct wb_bundles_result *const constant =
-        wb_bundles_results_usable(results, bundle->constant);
     const struct wb_bundles_fit *const fit = wb_bundles_results_fit(results, index);
     const double none = (double)NAN;
     wb_document_row(table, false);
     wb_pages_cell_plain(table, WB_TONE_PLAIN, bundle->label);
     wb_pages_cell_number(table, dynamic ? dynamic->curve.max_force : none, 3);
     wb_pages_cell_number(table, dynamic && dynamic->published ? dynamic->published_max : none, 3);
-    wb_pages_cell_number(table, dynamic && dynamic->published ? dynamic->rms : none, 4);
-    wb_pages_cell_number(table, constant && constant->published ? constant->rms : none, 4);
+    wb_pages_cell_number(table, wb_bundles_results_rms(results, bundle->dynamic), 4);
+    wb_pages_cell_number(table, wb_bundles_results_rms(results, bundle->constant), 4);
     wb_pages_cell_number(table, fit ? fit->result.rms : none, 4);
     wb_pages_cell_number(table, wb_bundles_results_cost(results, index) / WB_PERCENT, 3);
 }
@@ -119,7 +117,7 @@ static void put_run(struct wb_document_table *table, const struct wb_bundles_res
     wb_pages_cell(table, WB_TONE_PLAIN, "%s", wb_bundles_loading(wanted));
     wb_pages_cell_number(table, run ? run->numbers.duration : none, 2);
     wb_pages_cell_number(table, run ? run->curve.max_force : none, 3);
-    wb_pages_cell_number(table, run && run->published ? run->rms : none, 4);
+    wb_pages_cell_number(table, wb_bundles_results_rms(results, index), 4);
     put_ratio(table, run ? run->numbers.kinetic : none, limits->kinetic);
     put_ratio(table, run ? run->numbers.artificial : none, limits->artificial);
     put_ratio(table, run ? run->numbers.imbalance : none, limits->imbalance);

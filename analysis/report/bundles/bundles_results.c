@@ -23,6 +23,12 @@ const struct wb_bundles_result *wb_bundles_results_dynamic(const struct wb_bundl
     return wb_bundles_results_usable(results, results->campaign->bundles[bundle].dynamic);
 }
 
+double wb_bundles_results_rms(const struct wb_bundles_results *results, int run)
+{
+    const struct wb_bundles_result *const result = wb_bundles_results_usable(results, run);
+    return result && result->published ? result->rms : (double)NAN;
+}
+
 bool wb_bundles_results_either(const struct wb_bundles_results *results,
                                const struct wb_bundles_bundle *bundle)
 {
@@ -111,13 +117,13 @@ int wb_bundles_results_judge(const struct wb_bundles_results *results,
     };
     int n = 0;
     for (int i = 0; i < campaign->n_bundles; i++) {
-        const struct wb_bundles_result *const run = wb_bundles_results_dynamic(results, i);
-        struct wb_verdict rms = {"RMS from the published curve, over its largest force", "rms_max",
-                                 campaign->bundles[i].label, .limit = limits->rms};
-        if (!run || !run->published || !isfinite(run->rms))
-            continue;
-        rms.value = run->rms;
-        wb_verdict_add(verdicts, &n, &rms);
+        const struct wb_verdict rms = {
+            "RMS from the published curve, over its largest force", "rms_max",
+            campaign->bundles[i].label,
+            .value = wb_bundles_results_rms(results, campaign->bundles[i].dynamic),
+            .limit = limits->rms};
+        if (isfinite(rms.value))
+            wb_verdict_add(verdicts, &n, &rms);
     }
     for (size_t i = 0; i < WB_COUNT(energies); i++)
         judge_energy(results, verdicts, &n, energies[i].verdict, energies[i].offset);

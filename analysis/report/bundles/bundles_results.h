@@ -47,6 +47,8 @@ const struct wb_bundles_result *wb_bundles_results_usable(const struct wb_bundle
 /* The same of a bundle's run with decaying friction. */
 const struct wb_bundles_result *wb_bundles_results_dynamic(const struct wb_bundles_results *results,
                                                            int bundle);
+/* RMS of a run from its published curve; NaN without one of them. */
+double wb_bundles_results_rms(const struct wb_bundles_results *results, int run);
 /* Whether one of a bundle's runs is usable, or one of any bundle of a group. */
 bool wb_bundles_results_either(const struct wb_bundles_results *results,
                                const struct wb_bundles_bundle *bundle);
