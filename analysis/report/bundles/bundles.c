@@ -32,7 +32,7 @@ const char *wb_bundles_loading(const struct wb_bundles_run *run)
  * was given. */
 struct settings {
     struct wb_bundle_override override;
-    bool has_load, has_weight, dead_force, weight;
+    bool has_load, has_weight, weight;
 };
 
 enum {
@@ -74,7 +74,7 @@ static enum wb_status read_settings(struct settings *s, const struct wb_config_n
     struct list lists[MOST_LISTS];
     int n_lists = 0;
     const struct wb_config_key loads[] = {
-        WB_CONFIG_OPTIONAL_BOOLEAN("dead_force", &s->dead_force),
+        WB_CONFIG_OPTIONAL_BOOLEAN("dead_force", &o->dead_force),
         WB_CONFIG_OPTIONAL_BOOLEAN("weight", &s->weight),
     };
     size_t n = n_own + add_rows(o, keys + n_own, lists, &n_lists);
@@ -100,13 +100,12 @@ static enum wb_status read_model(const struct wb_bundles *all, const struct wb_c
     WB_TRY(wb_campaign_find(&all->head, node, "bundle", "bundles", name, path, run->model_name));
     run->model = wb_memory_new(1, sizeof *run->model);
     struct wb_bundle_model *const m = run->model;
-    s->override.dead_force = s->dead_force;
     s->override.no_weight = s->has_weight && !s->weight;
     const enum wb_status status = wb_bundle_override_read(m, path, &s->override, NULL);
     if (status == WB_ERR_ARGUMENT)
         return wb_config_refuse(node, NULL, "the run cannot have these settings");
     WB_TRY(status);
-    if (s->has_load && !s->dead_force && m->loads.strand_length == 0.0)
+    if (s->has_load && !s->override.dead_force && m->loads.strand_length == 0.0)
         return wb_config_refuse(node, "dead_force", "'%s' has no strand", m->name);
     if (s->has_weight && s->weight && !m->loads.weight)
         return wb_config_refuse(node, "weight", "'%s' has no weight", m->name);
