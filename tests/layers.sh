@@ -72,7 +72,7 @@ rooms() { # FOLDER ROOM...
 }
 rooms daq stream protocol take recording acquire test doctor
 rooms fe team linear material swept solid model rod trial section bundle output
-rooms analysis dataset align import calibration cards validation plot predict compare schema solve jobs report
+rooms analysis keys dataset align import calibration cards validation plot predict compare solve jobs report schema
 rooms analysis/calibration law paper cycle three_point constituents properties
 rooms analysis/report draw bench wires bundles machines predictions kinds
 # The common files of reports include no kind of report, and no kind includes another kind; only

@@ -48,7 +48,7 @@ for archive in "$@"; do
             # Meson prefixes the object name with the rooms of its folder.
             found = belongs(stem, $2)
             for (rooms = 1; rooms <= 2 && !found; rooms++) {
-                if (!sub(/^(dataset|align|import|calibration|cards|validation|plot|predict|compare|law|paper|cycle|three_point|constituents|properties|stream|protocol|take|recording|acquire|test|doctor)_/, "", stem))
+                if (!sub(/^(keys|dataset|align|import|calibration|cards|validation|plot|predict|compare|law|paper|cycle|three_point|constituents|properties|stream|protocol|take|recording|acquire|test|doctor)_/, "", stem))
                     break
                 found = belongs(stem, $2)
             }

@@ -1,6 +1,6 @@
 /* Dataset: one test as force-deflection rows and shapes, from any source.
  *
- * On disk a folder: dataset.json (provenance; its keys are in analysis/schema),
+ * On disk a folder: dataset.json (provenance; its keys are rows of tables, see analysis/keys),
  * force_deflection.csv, shape.csv. Bench tests, imported files and simulations have the same form,
  * and the calibration treats them alike.
  *

@@ -5,6 +5,7 @@
 
 #include "analysis/dataset/csv_table.h"
 #include "analysis/dataset/simulated.h"
+#include "analysis/keys/row.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -52,63 +53,152 @@ static void set_info(struct wb_test_info *info, const struct wb_bundle_model *mo
 
 /* --- dataset.json --- */
 
-static void describe_interface(struct wb_json *simulation, const struct wb_bundle_model *model)
-{
-    const struct wb_bundle_interface *interface = &model->interface;
+#define MODEL(member) WB_AT(struct wb_bundle_model, member)
+#define INTERFACE(member) WB_AT(struct wb_bundle_interface, member)
+#define DAMAGE(member) WB_AT(struct wb_bundle_damage, member)
+#define MESH(member) WB_AT(struct wb_bundle_mesh, member)
+#define RESULT(member) WB_AT(struct wb_bundle_result, member)
+#define ENERGY(member) WB_AT(struct wb_bundle_energies, member)
+#define LARGEST(member) WB_AT(struct wb_bundle_extremes, member)
 
-    wb_setting_set_json(wb_bundle_model_friction_setting, interface, simulation);
-    if (!model->has_tape)
-        return;
-    struct wb_json *const cohesion = wb_json_set_object(simulation, "cohesion");
-    wb_json_set_number(cohesion, "normal_stiffness_N_mm3",
-                       interface->normal_stiffness / WB_N_PER_MM3);
-    wb_json_set_number(cohesion, "shear_stiffness_N_mm3",
-                       interface->shear_stiffness / WB_N_PER_MM3);
-    if (!interface->has_damage)
-        return;
-    wb_json_set_number(cohesion, "strength_MPa", interface->damage.strength / WB_MPA);
-    wb_json_set_number(cohesion, "shear_strength_MPa", interface->damage.shear_strength / WB_MPA);
-    wb_json_set_number(cohesion, "fracture_energy_N_mm",
-                       interface->damage.fracture_energy / WB_N_PER_MM);
+static const struct wb_key cohesion_rows[] = {
+    {"normal_stiffness_N_mm3", INTERFACE(normal_stiffness), "N/mm3", "normal stiffness"},
+    {"shear_stiffness_N_mm3", INTERFACE(shear_stiffness), "N/mm3", "shear stiffness"},
+    {"strength_MPa", DAMAGE(strength) | OPTIONAL, "MPa",
+     "strength; absent: the bond does not fail"},
+    {"shear_strength_MPa", DAMAGE(shear_strength) | OPTIONAL, "MPa", "shear strength"},
+    {"fracture_energy_N_mm", DAMAGE(fracture_energy) | OPTIONAL, "N/mm", "fracture energy"},
+};
+static WB_KEYS(cohesion, "cohesion", "The bond between tape and wires.");
+
+static const struct wb_setting_table friction_setting = {wb_bundle_model_friction_setting, 1};
+
+static const struct wb_key override_rows[] = {
+#define OVERRIDES(of)                                                                              \
+    {                                                                                              \
+        .type = OPTIONAL, .settings = &wb_bundle_override_tables[WB_BUNDLE_OVERRIDE_##of]          \
+    }
+    OVERRIDES(MESH), OVERRIDES(PIECE),    OVERRIDES(TEST),     OVERRIDES(LOADS),
+    OVERRIDES(RUN),  OVERRIDES(FRICTION), OVERRIDES(COHESION),
+#undef OVERRIDES
+};
+static WB_KEYS(override, "overridden",
+               "The settings of the bundle's file that options of the command replaced.");
+
+static const struct wb_key wb_simulated_bundle_head_keys_rows[] = {
+    {"name", MODEL(name), "", "name of the model"},
+    {"title", MODEL(title), "", "title of the model"},
+    {"notes", MODEL(notes) | IF_KNOWN, "", "notes of the model"},
+    {"file", TEXT, "", "file of the model"},
+    {"law", TEXT, "", "whether wires may yield", .choices = "elastoplastic"},
+    {"wires", MODEL(packing.n), "", "number of wires"},
+    {"tape", MODEL(has_tape), "", "there is a tape"},
+    {.settings = &friction_setting, MODEL(interface)},
+    {"cohesion", OBJECT | OPTIONAL, "", "bond between tape and wires", &cohesion},
+    {"overridden", OBJECT | OPTIONAL, "", "settings that options replaced", &override},
+};
+WB_KEYS(wb_simulated_bundle_head_keys, "bundle_keys", "");
+
+static const struct wb_key bundle_mesh_rows[] = {
+    {"name", MESH(name), "", "name of the mesh"},
+    {"section_quads", INTEGER, "", "quadrilaterals of a wire's section"},
+    {"elements_along", MESH(elements_along), "", "elements along the bundle"},
+    {"tape_quads", INTEGER, "", "quadrilaterals round the tape"},
+    {"formulation", WB_CHOICE(struct wb_bundle_mesh, formulation), "",
+     "integration of the hexahedra", .choices = "2x2x1|one-point"},
+};
+static WB_KEYS(bundle_mesh, "mesh_of_bundle", "The mesh of a bundle.");
+
+static const struct wb_key bundle_energy_rows[] = {
+    {"external_J", ENERGY(external), "J",
+     "work of the tip's force and of the weight, less the kinetic energy removed when the strand "
+     "became slack"},
+    {"kinetic_J", ENERGY(kinetic), "J", "kinetic energy of the scaled masses"},
+    {"stored_J", ENERGY(stored), "J", "elastic energy of wires and tape"},
+    {"plastic_J", ENERGY(plastic), "J", "energy dissipated by plasticity of wires and tape"},
+    {"contact_J", ENERGY(contact), "J",
+     "energy stored in contact between wires, and of tape and wires"},
+    {"cohesive_J", ENERGY(cohesive), "J",
+     "energy stored in the tape's bond and dissipated by its damage"},
+    {"friction_J", ENERGY(friction), "J", "energy dissipated by friction"},
+    {"artificial_J", ENERGY(artificial), "J", "energy of the hourglass stiffness"},
+    {"imbalance_J", NUMBER, "J", "external work less all other energies"},
+};
+static WB_KEYS(bundle_energy, "energy_of_bundle", "Energies at the last row.");
+
+static const struct wb_key bundle_largest_rows[] = {
+    {"kinetic_over_internal", LARGEST(kinetic) | UNKNOWN, "",
+     "kinetic over internal energy, from 2 mm of deflection on (or half the deflection)"},
+    {"artificial_over_internal", LARGEST(artificial) | UNKNOWN, "",
+     "artificial over internal energy"},
+    {"imbalance_over_external", LARGEST(imbalance) | UNKNOWN, "",
+     "imbalance over the largest external work so far"},
+    {"strain", LARGEST(strain), "", "logarithmic strain"},
+    {"penetration_mm", LARGEST(penetration), "mm", "penetration of wires"},
+    {"beyond_strain_limit", LARGEST(beyond), "",
+     "a strain exceeds 5 % in wires or 10 % in the tape, beyond which the elements' logarithmic "
+     "strain is not accurate"},
+};
+static WB_KEYS(bundle_largest, "largest_of_bundle", "Largest values of the run.");
+
+static const struct wb_key wb_simulated_bundle_keys_rows[] = {
+    {"mesh", OBJECT, "", "mesh", &bundle_mesh},
+    {"elements", RESULT(hexahedra), "", "number of hexahedra"},
+    {"shells", RESULT(shells), "", "number of shells"},
+    {"time_step_s", RESULT(time_step) | UNKNOWN, "s", "time step"},
+    {"steps", RESULT(steps), "", "time steps of the last attempt"},
+    {"steps_of_all_attempts", RESULT(all_steps), "", "time steps of all attempts"},
+    {"duration_s", RESULT(duration), "s", "duration of a loading in the model's time"},
+    {"duration_chosen", RESULT(chosen), "",
+     "the duration was chosen from the limit of the kinetic energy"},
+    {"attempts", RESULT(attempts), "", "attempts that the choice took"},
+    {"kinetic_energy_limit", NUMBER, "", "limit of kinetic over internal energy"},
+    {"limit_kept", FLAG, "", "the last attempt kept that limit"},
+    {"mass_scaling", NUMBER, "", "mass scaling f_m of eq. 29"},
+    {"selective_mass_scaling", NUMBER, "", "selective mass scaling beta; 1: none"},
+    {"precision", TEXT | OPTIONAL, "",
+     "precision of forces and of stored states of the material; absent: single",
+     .choices = "single|double"},
+    {"energy", OBJECT | OPTIONAL, "", "energies at the last row", &bundle_energy},
+    {"largest", RESULT(largest), "", "largest values of the run", &bundle_largest},
+    {"converged", RESULT(converged), "", "the whole loading was computed"},
+    {"stopped", RESULT(stopped), "", "stopped by Ctrl-C"},
+    {"problem", TEXT | OPTIONAL, "", "where and why the computation failed"},
+    {"zero_force_N", RESULT(zero_force) | UNKNOWN, "N",
+     "vertical force that `force_N` is counted from"},
+    {"threads", INTEGER, "", "threads of a process"},
+    {"ranks", INTEGER, "", "processes of MPI"},
+    {"wall_s", WB_AT(struct wb_simulated_bundle, wall), "s", "time of the computation"},
+    {"cpu_s", WB_AT(struct wb_simulated_bundle, cpu), "s", "CPU time of the computation"},
+    {"ns_per_element_step", NUMBER | OPTIONAL, "ns", "CPU time over hexahedra and steps"},
+};
+WB_KEYS(wb_simulated_bundle_keys, "explicit_keys", "");
+
+static void describe_cohesion(struct wb_json *simulation,
+                              const struct wb_bundle_interface *interface)
+{
+    struct wb_json *const object = wb_json_set_object(simulation, "cohesion");
+    WB_PUT(object, &cohesion, struct wb_bundle_interface, interface);
+    if (interface->has_damage)
+        WB_PUT(object, &cohesion, struct wb_bundle_damage, &interface->damage);
 }
 
 static void describe_mesh(struct wb_json *object, const struct wb_simulated_bundle *bundle)
 {
     const struct wb_bundle_mesh *mesh = bundle->mesh;
     struct wb_json *const out = wb_json_set_object(object, "mesh");
-    const bool one_point = mesh->formulation == WB_BUNDLE_ONE_POINT;
 
-    wb_json_set_text(out, "name", mesh->name);
+    WB_PUT(out, &bundle_mesh, struct wb_bundle_mesh, mesh);
     wb_json_set_integer(out, "section_quads", wb_bundle_model_section_quads(mesh));
-    wb_json_set_integer(out, "elements_along", mesh->elements_along);
+    WB_PUT(out, &bundle_mesh, struct wb_bundle_mesh, mesh);
     wb_json_set_integer(out, "tape_quads", wb_bundle_model_tape_quads(bundle->model, mesh));
-    wb_json_set_text(out, "formulation", one_point ? "one-point" : "2x2x1");
+    WB_PUT(out, &bundle_mesh, struct wb_bundle_mesh, mesh);
 }
 
 static void describe_energies(struct wb_json *object, const struct wb_bundle_energies *e)
 {
-    wb_json_set_number(object, "external_J", e->external);
-    wb_json_set_number(object, "kinetic_J", e->kinetic);
-    wb_json_set_number(object, "stored_J", e->stored);
-    wb_json_set_number(object, "plastic_J", e->plastic);
-    wb_json_set_number(object, "contact_J", e->contact);
-    wb_json_set_number(object, "cohesive_J", e->cohesive);
-    wb_json_set_number(object, "friction_J", e->friction);
-    wb_json_set_number(object, "artificial_J", e->artificial);
+    WB_PUT(object, &bundle_energy, struct wb_bundle_energies, e);
     wb_json_set_number(object, "imbalance_J", wb_bundle_imbalance(e));
-}
-
-static void describe_largest(struct wb_json *object, const struct wb_simulated_bundle *bundle)
-{
-    const struct wb_bundle_result *h = bundle->result;
-    struct wb_json *const largest = wb_json_set_object(object, "largest");
-
-    wb_json_set_number(largest, "kinetic_over_internal", h->largest.kinetic);
-    wb_json_set_number(largest, "artificial_over_internal", h->largest.artificial);
-    wb_json_set_number(largest, "imbalance_over_external", h->largest.imbalance);
-    wb_json_set_number(largest, "strain", h->largest.strain);
-    wb_json_set_number(largest, "penetration_mm", h->largest.penetration / WB_MM);
-    wb_json_set_boolean(largest, "beyond_strain_limit", h->largest.beyond);
 }
 
 /* A setting of the run, by its place in wb_bundle_model_run_settings. */
@@ -123,14 +213,7 @@ void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simula
     const double element_steps = (double)h->all_steps * (double)h->hexahedra;
 
     describe_mesh(object, bundle);
-    wb_json_set_integer(object, "elements", h->hexahedra);
-    wb_json_set_integer(object, "shells", h->shells);
-    wb_json_set_number(object, "time_step_s", h->time_step);
-    wb_json_set_integer(object, "steps", h->steps);
-    wb_json_set_integer(object, "steps_of_all_attempts", h->all_steps);
-    wb_json_set_number(object, "duration_s", h->duration);
-    wb_json_set_boolean(object, "duration_chosen", h->chosen);
-    wb_json_set_integer(object, "attempts", h->attempts);
+    WB_PUT(object, &wb_simulated_bundle_keys, struct wb_bundle_result, h);
     describe_setting(object, bundle->model, WB_BUNDLE_MODEL_KINETIC_LIMIT);
     wb_json_set_boolean(object, "limit_kept", !h->exceeded);
     describe_setting(object, bundle->model, WB_BUNDLE_MODEL_MASS_SCALING);
@@ -138,16 +221,13 @@ void wb_simulated_bundle_describe(struct wb_json *object, const struct wb_simula
     describe_setting(object, bundle->model, WB_BUNDLE_MODEL_PRECISION);
     if (h->n_rows > 0)
         describe_energies(wb_json_set_object(object, "energy"), &h->rows[h->n_rows - 1].energies);
-    describe_largest(object, bundle);
-    wb_json_set_boolean(object, "converged", h->converged);
-    wb_json_set_boolean(object, "stopped", h->stopped);
+    WB_PUT(object, &wb_simulated_bundle_keys, struct wb_bundle_result, h);
     if (!h->converged)
         wb_json_set_text(object, "problem", h->reason.text);
-    wb_json_set_number(object, "zero_force_N", h->zero_force);
+    WB_PUT(object, &wb_simulated_bundle_keys, struct wb_bundle_result, h);
     wb_json_set_integer(object, "threads", h->parts > 0 ? h->parts / wb_team_ranks() : 1);
     wb_json_set_integer(object, "ranks", wb_team_ranks());
-    wb_json_set_number(object, "wall_s", bundle->wall);
-    wb_json_set_number(object, "cpu_s", bundle->cpu);
+    WB_PUT(object, &wb_simulated_bundle_keys, struct wb_simulated_bundle, bundle);
     if (element_steps > 0.0)
         wb_json_set_number(object, "ns_per_element_step", 1e9 * bundle->cpu / element_steps);
 }
@@ -199,16 +279,13 @@ struct wb_json *wb_simulated_bundle_begin(struct wb_dataset *dataset,
 
     struct wb_json *const simulation = wb_json_set_object(document, "simulation");
     wb_json_set_text(simulation, "model", head->mesh ? "bundle" : "section");
-    wb_json_set_text(simulation, "name", model->name);
-    wb_json_set_text(simulation, "title", model->title);
-    if (model->notes[0] != '\0')
-        wb_json_set_text(simulation, "notes", model->notes);
+    WB_PUT(simulation, &wb_simulated_bundle_head_keys, struct wb_bundle_model, model);
     wb_json_set_text(simulation, "file", wb_file_name(model->path));
     wb_simulated_bundle_inputs(wb_json_set_object(simulation, "inputs"), model, head->mesh);
     wb_json_set_text(simulation, "law", "elastoplastic");
-    wb_json_set_integer(simulation, "wires", model->packing.n);
-    wb_json_set_boolean(simulation, "tape", model->has_tape);
-    describe_interface(simulation, model);
+    WB_PUT(simulation, &wb_simulated_bundle_head_keys, struct wb_bundle_model, model);
+    if (model->has_tape)
+        describe_cohesion(simulation, &model->interface);
     describe_override(simulation, head->override);
     return simulation;
 }

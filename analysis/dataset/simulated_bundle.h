@@ -12,6 +12,7 @@
 #define WB_ANALYSIS_DATASET_SIMULATED_BUNDLE_H
 
 #include "analysis/dataset/dataset.h"
+#include "analysis/keys/keys.h"
 #include "base/hash.h"
 #include "base/status.h"
 #include "fe/bundle/bundle_run.h"
@@ -44,6 +45,9 @@ struct wb_simulated_bundle_head {
     const struct wb_bundle_override *override; /* NULL: nothing */
     bool is_complete;
 };
+
+/* Keys of `simulation`: those that do not depend on the solver, and those of explicit dynamics. */
+extern const struct wb_keys wb_simulated_bundle_head_keys, wb_simulated_bundle_keys;
 
 /* Sets `info` and begins dataset.json; returns its `simulation` for further members. */
 struct wb_json *wb_simulated_bundle_begin(struct wb_dataset *dataset,

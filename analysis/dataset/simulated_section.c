@@ -5,6 +5,7 @@
 #include "analysis/dataset/csv_table.h"
 #include "analysis/dataset/simulated.h"
 #include "analysis/dataset/simulated_bundle.h"
+#include "analysis/keys/row.h"
 #include "base/text.h"
 #include "base/units.h"
 
@@ -31,6 +32,76 @@ static void add_rows(struct wb_dataset *dataset, const struct wb_section_run *ru
 }
 
 /* --- dataset.json --- */
+
+#define RUN(member) WB_AT(struct wb_section_run, member)
+#define RIGIDITY(member) WB_AT(struct wb_section_run_rigidity, member)
+#define POINT(member) WB_AT(struct wb_section_homogenise_point, member)
+
+static const struct wb_key section_energy_rows[] = {
+    {"external_J", NUMBER, "J", "work of the tip's force and of the weight"},
+    {"wires_J", NUMBER, "J", "stored and plastic work of the wires"},
+    {"tape_J", NUMBER, "J", "stored and plastic work of the tape"},
+    {"cohesive_J", NUMBER, "J", "energy stored in the bond"},
+    {"friction_J", NUMBER, "J",
+     "energy dissipated by friction, with what contacts store before they slip"},
+    {"imbalance_J", NUMBER, "J", "external work less all other energies"},
+};
+static WB_KEYS(section_energy, "energy_of_section", "Energies at the last row.");
+
+static const struct wb_key section_largest_rows[] = {
+    {"residual", RUN(residual) | UNKNOWN, "", "residual over the largest force"},
+    {"imbalance_over_external", RUN(imbalance) | UNKNOWN, "", "imbalance over the external work"},
+    {"contact_balance_missing", RUN(missing) | UNKNOWN, "",
+     "load in the plane that contact forces do not balance, over the largest load"},
+    {"tape_plastic_strain", RUN(tape_plastic), "", "plastic strain of the tape"},
+};
+static WB_KEYS(section_largest, "largest_of_section", "Largest values of the run.");
+
+static const struct wb_key elastic_rows[] = {
+    {"length_mm", RIGIDITY(length), "mm", "length: half, once or twice the bundle's"},
+    {"flexural_rigidity_N_mm2", RIGIDITY(rigidity), "N mm2",
+     "flexural rigidity of the homogenised beam"},
+    {"newmark_alpha_L", RIGIDITY(alpha) | UNKNOWN, "",
+     "alpha L of Newmark's theory; null: no slip gives the rigidity"},
+};
+static WB_KEYS(elastic, "elastic_beam", "The elastic rigidity at one length.");
+
+static const struct wb_key curve_rows[] = {
+    {"curvature_1_m", POINT(curvature), "1/m", "curvature"},
+    {"moment_N_mm", POINT(moment), "N mm", "moment"},
+    {"secant_rigidity_N_mm2", NUMBER | UNKNOWN, "N mm2", "moment over curvature"},
+};
+static WB_KEYS(curve, "beam_moment", "A point of the moment curve.");
+
+static const struct wb_key beam_rows[] = {
+    {"elastic", OBJECT | LIST, "", "rigidity at half, once and twice the length", &elastic},
+    {"moment_curvature", OBJECT | LIST, "", "moment over curvature", &curve},
+};
+static WB_KEYS(
+    beam, "homogenised_beam",
+    "The beam that bends like the bundle; it holds for this length and these ends only.");
+
+static const struct wb_key wb_simulated_section_keys_rows[] = {
+    {"bending", TEXT, "", "kind of bending: planar, without twist"},
+    {"friction_used", RUN(friction), "", "friction coefficient of the computation"},
+    {"friction_is_mean_of_decay", RUN(is_mean), "",
+     "it is the geometric mean of a static and a kinetic coefficient"},
+    {"mirrored", RUN(is_mirrored), "", "mirror images share unknowns"},
+    {"elements_along", RUN(elements), "", "elements along the bundle"},
+    {"unknowns", RUN(unknowns), "", "unknowns of all stations"},
+    {"increments", RUN(increments), "", "increments of the loading"},
+    {"iterations", RUN(iterations), "", "iterations of the equilibrium"},
+    {"energy", OBJECT | OPTIONAL, "", "energies at the last row", &section_energy},
+    {"largest", WB_HERE(struct wb_section_run), "", "largest values of the run", &section_largest},
+    {"homogenised_beam_of_this_length_and_these_ends", OBJECT, "", "beam that bends alike", &beam},
+    {"converged", RUN(converged), "", "the whole loading was computed"},
+    {"stopped", RUN(stopped), "", "stopped by Ctrl-C"},
+    {"zero_force_N", RUN(zero_force) | UNKNOWN, "N",
+     "vertical force that `force_N` is counted from"},
+    {"wall_s", WB_AT(struct wb_simulated_section, wall), "s", "time of the computation"},
+    {"cpu_s", WB_AT(struct wb_simulated_section, cpu), "s", "CPU time of the computation"},
+};
+WB_KEYS(wb_simulated_section_keys, "section_keys", "");
 
 enum {
     ENERGIES = 6
@@ -61,23 +132,19 @@ static void describe_energies(struct wb_json *object, const struct wb_section_be
  * three lengths show it. */
 static void describe_beam(struct wb_json *object, const struct wb_section_run *run)
 {
-    struct wb_json *const beam =
+    struct wb_json *const member =
         wb_json_set_object(object, "homogenised_beam_of_this_length_and_these_ends");
-    struct wb_json *const lengths = wb_json_set_array(beam, "elastic");
-    struct wb_json *const curve = wb_json_set_array(beam, "moment_curvature");
+    struct wb_json *const lengths = wb_json_set_array(member, "elastic");
+    struct wb_json *const points = wb_json_set_array(member, "moment_curvature");
 
     for (int i = 0; i < WB_SECTION_RUN_LENGTHS && run->rigidity[i].length > 0.0; i++) {
         const struct wb_section_run_rigidity *const r = &run->rigidity[i];
-        struct wb_json *const item = wb_json_append_object(lengths);
-        wb_json_set_number(item, "length_mm", r->length / WB_MM);
-        wb_json_set_number(item, "flexural_rigidity_N_mm2", r->rigidity / WB_NMM2);
-        wb_json_set_number(item, "newmark_alpha_L", r->alpha);
+        WB_PUT(wb_json_append_object(lengths), &elastic, struct wb_section_run_rigidity, r);
     }
     for (int i = 0; i < run->n_curve; i++) {
         const struct wb_section_homogenise_point *const p = &run->curve[i];
-        struct wb_json *const item = wb_json_append_object(curve);
-        wb_json_set_number(item, "curvature_1_m", p->curvature);
-        wb_json_set_number(item, "moment_N_mm", p->moment / WB_MM);
+        struct wb_json *const item = wb_json_append_object(points);
+        WB_PUT(item, &curve, struct wb_section_homogenise_point, p);
         wb_json_set_number(item, "secant_rigidity_N_mm2", p->moment / p->curvature / WB_NMM2);
     }
 }
@@ -88,27 +155,14 @@ void wb_simulated_section_describe(struct wb_json *object,
     const struct wb_section_run *const run = section->run;
 
     wb_json_set_text(object, "bending", "planar, without twist");
-    wb_json_set_number(object, "friction_used", run->friction);
-    wb_json_set_boolean(object, "friction_is_mean_of_decay", run->is_mean);
-    wb_json_set_boolean(object, "mirrored", run->is_mirrored);
-    wb_json_set_integer(object, "elements_along", run->elements);
-    wb_json_set_integer(object, "unknowns", run->unknowns);
-    wb_json_set_integer(object, "increments", run->increments);
-    wb_json_set_integer(object, "iterations", run->iterations);
+    WB_PUT(object, &wb_simulated_section_keys, struct wb_section_run, run);
     if (run->n_rows > 0)
         describe_energies(wb_json_set_object(object, "energy"),
                           &run->rows[run->n_rows - 1].energies);
-    struct wb_json *const largest = wb_json_set_object(object, "largest");
-    wb_json_set_number(largest, "residual", run->residual);
-    wb_json_set_number(largest, "imbalance_over_external", run->imbalance);
-    wb_json_set_number(largest, "contact_balance_missing", run->missing);
-    wb_json_set_number(largest, "tape_plastic_strain", run->tape_plastic);
+    WB_PUT(object, &wb_simulated_section_keys, struct wb_section_run, run);
     describe_beam(object, run);
-    wb_json_set_boolean(object, "converged", run->converged);
-    wb_json_set_boolean(object, "stopped", run->stopped);
-    wb_json_set_number(object, "zero_force_N", run->zero_force);
-    wb_json_set_number(object, "wall_s", section->wall);
-    wb_json_set_number(object, "cpu_s", section->cpu);
+    WB_PUT(object, &wb_simulated_section_keys, struct wb_section_run, run);
+    WB_PUT(object, &wb_simulated_section_keys, struct wb_simulated_section, section);
 }
 
 void wb_simulated_section_fill(struct wb_dataset *dataset,

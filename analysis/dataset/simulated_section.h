@@ -10,6 +10,7 @@
 #define WB_ANALYSIS_DATASET_SIMULATED_SECTION_H
 
 #include "analysis/dataset/dataset.h"
+#include "analysis/keys/keys.h"
 #include "base/json.h"
 #include "base/status.h"
 #include "fe/model/bundle_override.h"
@@ -30,6 +31,9 @@ void wb_simulated_section_fill(struct wb_dataset *dataset,
 WB_MUST_CHECK enum wb_status
 wb_simulated_section_write_energies(const struct wb_dataset *dataset,
                                     const struct wb_simulated_section *section, const char *folder);
+
+/* Its keys of `simulation` after those of the head (analysis/dataset/simulated_bundle.h). */
+extern const struct wb_keys wb_simulated_section_keys;
 
 /* Numbers of a run for `simulation` and for --json of the command. */
 void wb_simulated_section_describe(struct wb_json *object,

@@ -1,9 +1,9 @@
 /* Keys of dataset.json that alignment writes; reports copy corrections, checks and warnings. */
-#include "analysis/schema/row.h"
+#include "analysis/schema/tables.h"
 
 /* --- checks --- */
 
-static const struct wb_schema_row camera_clock_rows[] = {
+static const struct wb_key camera_clock_rows[] = {
     {"method", TEXT, "", "how the clock was mapped to the host's",
      .choices = "echo probes|lower envelope"},
     {"frames", INTEGER, "", "frames of the segment"},
@@ -17,11 +17,10 @@ static const struct wb_schema_row camera_clock_rows[] = {
     {"uncertainty_ms", NUMBER | UNKNOWN, "ms", "standard uncertainty of mapped times"},
     {"note", TEXT | OPTIONAL, "", "what the uncertainty does not include"},
 };
-static const struct wb_schema_object camera_clock = {
-    "camera_clock", "A segment of the cameras' clock, from one restart to the next.",
-    ROWS(camera_clock_rows)};
+static WB_KEYS(camera_clock, "camera_clock",
+               "A segment of the cameras' clock, from one restart to the next.");
 
-static const struct wb_schema_row load_stream_rows[] = {
+static const struct wb_key load_stream_rows[] = {
     {"method", TEXT, "", "source of the readings' times",
      .choices = "times of the file|arrival of each reading|lower envelope"},
     {"readings", INTEGER, "", "number of readings"},
@@ -31,10 +30,9 @@ static const struct wb_schema_row load_stream_rows[] = {
     {"arrival_scatter_ms", NUMBER | UNKNOWN, "ms",
      "scatter of the arrivals about the line over the readings' number"},
 };
-static const struct wb_schema_object load_stream = {
-    "load_cell_stream", "The stream of the load cell.", ROWS(load_stream_rows)};
+static WB_KEYS(load_stream, "load_cell_stream", "The stream of the load cell.");
 
-static const struct wb_schema_row markers_rows[] = {
+static const struct wb_key markers_rows[] = {
     {"frames", INTEGER, "", "number of frames"},
     {"seen_percent", NUMBER, "%", "share of the markers' places that were seen"},
     {"stray_points", INTEGER, "", "points that belong to no marker"},
@@ -44,10 +42,9 @@ static const struct wb_schema_row markers_rows[] = {
      "points left out because the server computed them from a model"},
     {"chain_searches", INTEGER, "", "searches for the chain of markers from scratch"},
 };
-static const struct wb_schema_object markers = {"markers", "The identification of the markers.",
-                                                ROWS(markers_rows)};
+static WB_KEYS(markers, "markers", "The identification of the markers.");
 
-static const struct wb_schema_row plane_rows[] = {
+static const struct wb_key plane_rows[] = {
     {"planarity_rms_mm", NUMBER, "mm", "RMS distance of the markers from the bending plane"},
     {"plane_tilt_deg", NUMBER, "degree", "angle of the fitted plane's normal to the horizontal"},
     {"clamp_motion_mm", NUMBER, "mm", "travel of the clamp's marker"},
@@ -58,10 +55,9 @@ static const struct wb_schema_row plane_rows[] = {
      "standard uncertainty of the vertical's direction"},
     {"vertical", TEXT, "", "source of the vertical's direction"},
 };
-static const struct wb_schema_object plane = {"bending_plane", "The plane in which the wire bends.",
-                                              ROWS(plane_rows)};
+static WB_KEYS(plane, "bending_plane", "The plane in which the wire bends.");
 
-static const struct wb_schema_row stage_rows[] = {
+static const struct wb_key stage_rows[] = {
     {"reports", INTEGER | OPTIONAL, "", "position reports of the stage that were compared"},
     {"slope", NUMBER | OPTIONAL, "", "measured over commanded travel"},
     {"slope_uncertainty", NUMBER | UNKNOWN | OPTIONAL, "", "standard uncertainty of the slope"},
@@ -73,13 +69,12 @@ static const struct wb_schema_row stage_rows[] = {
      "measured less commanded travel after the test, less the same before it"},
     {"lost_steps", FLAG, "", "the stage seems to have lost steps"},
 };
-static const struct wb_schema_object stage = {
-    "stage_check",
+static WB_KEYS(
+    stage, "stage_check",
     "Measured over commanded travel of the stage; only `lost_steps` where the clamp did not follow "
-    "the stage.",
-    ROWS(stage_rows)};
+    "the stage.");
 
-static const struct wb_schema_row loss_rows[] = {
+static const struct wb_key loss_rows[] = {
     {"received", INTEGER, "", "number received"},
     {"missing", INTEGER, "", "number that never arrived"},
     {"gaps", INTEGER, "", "places where some are missing"},
@@ -87,25 +82,22 @@ static const struct wb_schema_row loss_rows[] = {
     {"overtaken", INTEGER, "", "number received after a later one"},
     {"longest_gap_s", NUMBER, "s", "longest gap"},
 };
-static const struct wb_schema_object loss = {"loss", "Samples of one stream that were lost.",
-                                             ROWS(loss_rows)};
+static WB_KEYS(loss, "loss", "Samples of one stream that were lost.");
 
-static const struct wb_schema_row losses_rows[] = {
+static const struct wb_key losses_rows[] = {
     {"frames", OBJECT, "", "frames of the cameras", &loss},
     {"readings", OBJECT, "", "readings of the load cell", &loss},
 };
-static const struct wb_schema_object losses = {"losses", "Samples that were lost.",
-                                               ROWS(losses_rows)};
+static WB_KEYS(losses, "losses", "Samples that were lost.");
 
-static const struct wb_schema_row zero_rows[] = {
+static const struct wb_key zero_rows[] = {
     {"t_s", NUMBER, "s", "time of the stretch"},
     {"reading_mN", NUMBER, "mN", "mean reading, less the tare"},
     {"uncertainty_mN", NUMBER | UNKNOWN, "mN", "standard uncertainty of the mean"},
 };
-static const struct wb_schema_object zero = {"zero_load", "A stretch without load.",
-                                             ROWS(zero_rows)};
+static WB_KEYS(zero, "zero_load", "A stretch without load.");
 
-static const struct wb_schema_row timing_rows[] = {
+static const struct wb_key timing_rows[] = {
     {"camera_clock", TEXT, "", "method by which the cameras' clock was mapped"},
     {"camera_clock_uncertainty_ms", NUMBER | UNKNOWN, "ms",
      "standard uncertainty of the cameras' times"},
@@ -123,10 +115,9 @@ static const struct wb_schema_row timing_rows[] = {
     {"loop_area_error_mJ", NUMBER | UNKNOWN, "mJ", "error of that area by such a lag"},
     {"note", TEXT, "", "explanation of these numbers"},
 };
-static const struct wb_schema_object timing = {
-    "timing", "The effect of a lag between force and deflection.", ROWS(timing_rows)};
+static WB_KEYS(timing, "timing", "The effect of a lag between force and deflection.");
 
-static const struct wb_schema_row natural_rows[] = {
+static const struct wb_key natural_rows[] = {
     {"bow_mm", NUMBER, "mm", "natural offset of the tip"},
     {"bow_uncertainty_mm", NUMBER | UNKNOWN, "mm", "standard uncertainty of the bow"},
     {"bow_from_markers_mm", NUMBER | UNKNOWN, "mm", "bow by the markers alone"},
@@ -138,10 +129,9 @@ static const struct wb_schema_row natural_rows[] = {
     {"terms_uncertainty_rad", NUMBER | LIST | UNKNOWN, "rad",
      "standard uncertainties of the terms of `natural_shape_rad`"},
 };
-static const struct wb_schema_object natural = {
-    "natural_shape", "The natural shape of the wire, from force and markers.", ROWS(natural_rows)};
+static WB_KEYS(natural, "natural_shape", "The natural shape of the wire, from force and markers.");
 
-static const struct wb_schema_row hold_rows[] = {
+static const struct wb_key hold_rows[] = {
     {"cycle", INTEGER, "", "cycle, from 1"},
     {"phase", TEXT, "", "phase in which the test was held", .choices = "down|up|rest"},
     {"travel_mm", NUMBER | UNKNOWN, "mm", "travel of the stage at the hold"},
@@ -150,10 +140,9 @@ static const struct wb_schema_row hold_rows[] = {
     {"tension_before_mN", NUMBER | UNKNOWN, "mN", "tension when the hold began"},
     {"tension_after_mN", NUMBER | UNKNOWN, "mN", "tension when the hold ended"},
 };
-static const struct wb_schema_object hold = {"hold", "A hold of the test by the operator.",
-                                             ROWS(hold_rows)};
+static WB_KEYS(hold, "hold", "A hold of the test by the operator.");
 
-static const struct wb_schema_row check_rows_rows[] = {
+static const struct wb_key check_rows_rows[] = {
     {"rows", INTEGER, "", "rows of force_deflection.csv"},
     {"shape_rows", INTEGER, "", "rows of shape.csv"},
     {"left_out", INTEGER, "", "time bins that have frames and give no row"},
@@ -164,10 +153,9 @@ static const struct wb_schema_row check_rows_rows[] = {
      "standard uncertainty of the level of zero deflection"},
     {"note", TEXT, "", "what a row is"},
 };
-static const struct wb_schema_object check_rows = {"rows_check", "The rows of the tables.",
-                                                   ROWS(check_rows_rows)};
+static WB_KEYS(check_rows, "rows_check", "The rows of the tables.");
 
-static const struct wb_schema_row import_rows[] = {
+static const struct wb_key import_rows[] = {
     {"take", TEXT, "", "name of the cameras' file"},
     {"take_sha256", TEXT, "", "SHA-256 of that file"},
     {"format", TEXT, "", "format of that file"},
@@ -194,10 +182,9 @@ static const struct wb_schema_row import_rows[] = {
     {"offset_s", NUMBER | UNKNOWN | OPTIONAL, "s",
      "time of the recording less time of the force file"},
 };
-static const struct wb_schema_object import = {
-    "mocap_import", "The import of files of cameras and load cell.", ROWS(import_rows)};
+static WB_KEYS(import, "mocap_import", "The import of files of cameras and load cell.");
 
-static const struct wb_schema_row checks_rows[] = {
+static const struct wb_key wb_schema_checks_rows[] = {
     {"import", OBJECT | OPTIONAL, "", "of an imported recording: what the import found", &import},
     {"losses", OBJECT | OPTIONAL, "", "frames and readings that were lost", &losses},
     {"camera_clock", OBJECT | LIST | OPTIONAL, "", "segments of the cameras' clock", &camera_clock},
@@ -213,12 +200,11 @@ static const struct wb_schema_row checks_rows[] = {
     {"rows", OBJECT | OPTIONAL, "", "rows of the tables", &check_rows},
     {"holds", OBJECT | LIST | OPTIONAL, "", "holds of the test by the operator", &hold},
 };
-const struct wb_schema_object wb_schema_checks = {"checks", "Findings of the alignment.",
-                                                  ROWS(checks_rows)};
+WB_KEYS(wb_schema_checks, "checks", "Findings of the alignment.");
 
 /* --- corrections --- */
 
-static const struct wb_schema_row correction_rows[] = {
+static const struct wb_key wb_schema_correction_rows[] = {
     {"name", TEXT, "", "the correction",
      .choices = "filter delay|marker offset|tare|zero drift|strand lean|force at zero "
                 "deflection|natural shape"},
@@ -230,39 +216,35 @@ static const struct wb_schema_row correction_rows[] = {
     {"uncertainty_ms", NUMBER | UNKNOWN | OPTIONAL, "ms", "its standard uncertainty"},
     {"note", TEXT, "", "what was done, and how the size was found"},
 };
-const struct wb_schema_object wb_schema_correction = {
-    "correction", "A correction of the data; its size stands in the key of its unit.",
-    ROWS(correction_rows)};
+WB_KEYS(wb_schema_correction, "correction",
+        "A correction of the data; its size stands in the key of its unit.");
 
 /* --- where the data come from --- */
 
-static const struct wb_schema_row difference_rows[] = {
+static const struct wb_key difference_rows[] = {
     {"key", TEXT, "", "key of the file, as `load_cell.unit`"},
     {"recorded", TEXT, "", "value that was recorded"},
     {"given", TEXT, "", "value that holds in its place"},
 };
-static const struct wb_schema_object difference = {"difference", "A key in which two files differ.",
-                                                   ROWS(difference_rows)};
+static WB_KEYS(difference, "difference", "A key in which two files differ.");
 
-static const struct wb_schema_row correction_file_rows[] = {
+static const struct wb_key correction_file_rows[] = {
     {"file", TEXT, "", "name of the file"},
     {"sha256", TEXT, "", "SHA-256 of the file"},
     {"differences", OBJECT | LIST, "", "keys in which it differs from the recorded file",
      &difference},
 };
-static const struct wb_schema_object correction_file = {
-    "corrected_file", "A file that holds in place of the recorded one.",
-    ROWS(correction_file_rows)};
+static WB_KEYS(correction_file, "corrected_file",
+               "A file that holds in place of the recorded one.");
 
-static const struct wb_schema_row corrected_rows[] = {
+static const struct wb_key corrected_rows[] = {
     {"rig", OBJECT | OPTIONAL, "", "rig file in place of the recorded one", &correction_file},
     {"specimen", OBJECT | OPTIONAL, "", "specimen file in place of the recorded one",
      &correction_file},
 };
-static const struct wb_schema_object corrected = {
-    "corrected", "Files that hold in place of recorded ones.", ROWS(corrected_rows)};
+static WB_KEYS(corrected, "corrected", "Files that hold in place of recorded ones.");
 
-static const struct wb_schema_row recording_rows[] = {
+static const struct wb_key recording_rows[] = {
     {"name", TEXT, "", "file name of the recording"},
     {"sha256", TEXT, "", "SHA-256 of the uncompressed recording"},
     {"start_utc", TEXT | OPTIONAL, "", "start of the test"},
@@ -273,20 +255,18 @@ static const struct wb_schema_row recording_rows[] = {
     {"excluded", OBJECT | OPTIONAL, "", "exclusion of the test", &wb_schema_excluded},
     {"corrected", OBJECT | OPTIONAL, "", "files that hold in place of recorded ones", &corrected},
 };
-static const struct wb_schema_object recording = {"recording", "The recording of a dataset.",
-                                                  ROWS(recording_rows)};
+static WB_KEYS(recording, "recording", "The recording of a dataset.");
 
-static const struct wb_schema_row settings_rows[] = {
+static const struct wb_key settings_rows[] = {
     {"longest_gap_s", NUMBER, "s", "no row is made where force or shape is missing for longer"},
     {"row_rate_per_s", NUMBER, "1/s", "rows per second of bench time"},
     {"shape_step_mm", NUMBER, "mm", "deflection between stored shapes"},
     {"lost_steps_mm", NUMBER, "mm",
      "difference of commanded and measured travel from which the stage is flagged"},
 };
-static const struct wb_schema_object settings = {"align_settings", "Settings of the alignment.",
-                                                 ROWS(settings_rows)};
+static WB_KEYS(settings, "align_settings", "Settings of the alignment.");
 
-static const struct wb_schema_row specimen_rows[] = {
+static const struct wb_key specimen_rows[] = {
     {"wire", TEXT, "", "name of the product"},
     {"sample", INTEGER, "", "number of the piece"},
     {"length_mm", NUMBER, "mm", "free length"},
@@ -296,10 +276,9 @@ static const struct wb_schema_row specimen_rows[] = {
     {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
     {"density_g_cm3", NUMBER, "g/cm3", "mean density over the outer diameter"},
 };
-static const struct wb_schema_object specimen = {"specimen", "The specimen, as its files say.",
-                                                 ROWS(specimen_rows)};
+static WB_KEYS(specimen, "specimen", "The specimen, as its files say.");
 
-static const struct wb_schema_row cell_rows[] = {
+static const struct wb_key cell_rows[] = {
     {"protocol", TEXT, "", "protocol of the load cell"},
     {"capacity_g", NUMBER, "g", "nominal load"},
     {"serial_number", TEXT, "", "serial number; empty: not stated"},
@@ -307,30 +286,26 @@ static const struct wb_schema_row cell_rows[] = {
     {"filter_delay_ms", NUMBER, "ms", "delay of the reading behind the force"},
     {"filter_delay_uncertainty_ms", NUMBER, "ms", "standard uncertainty of that delay"},
 };
-static const struct wb_schema_object cell = {"rig_load_cell", "The load cell of the rig.",
-                                             ROWS(cell_rows)};
+static WB_KEYS(cell, "rig_load_cell", "The load cell of the rig.");
 
-static const struct wb_schema_row mocap_rows[] = {
+static const struct wb_key mocap_rows[] = {
     {"protocol", TEXT, "", "protocol of the cameras"},
 };
-static const struct wb_schema_object mocap = {"rig_mocap", "The cameras of the rig.",
-                                              ROWS(mocap_rows)};
+static WB_KEYS(mocap, "rig_mocap", "The cameras of the rig.");
 
-static const struct wb_schema_row rig_stage_rows[] = {
+static const struct wb_key rig_stage_rows[] = {
     {"protocol", TEXT, "", "protocol of the stage"},
     {"speed_mm_s", NUMBER, "mm/s", "speed during the test"},
 };
-static const struct wb_schema_object rig_stage = {"rig_stage", "The stage of the rig.",
-                                                  ROWS(rig_stage_rows)};
+static WB_KEYS(rig_stage, "rig_stage", "The stage of the rig.");
 
-static const struct wb_schema_row strand_rows[] = {
+static const struct wb_key strand_rows[] = {
     {"length_mm", NUMBER, "mm", "length of the strand; 0: none"},
     {"counterweight_g", NUMBER, "g", "mass at the tip"},
 };
-static const struct wb_schema_object strand = {"rig_strand", "The strand of the rig.",
-                                               ROWS(strand_rows)};
+static WB_KEYS(strand, "rig_strand", "The strand of the rig.");
 
-static const struct wb_schema_row rig_rows[] = {
+static const struct wb_key rig_rows[] = {
     {"name", TEXT, "", "name of the rig"},
     {"virtual_rig", FLAG, "", "the data come from a virtual rig"},
     {"time_scale", NUMBER, "", "factor by which the clocks of a virtual rig run faster"},
@@ -340,9 +315,9 @@ static const struct wb_schema_row rig_rows[] = {
     {"stage", OBJECT, "", "stage", &rig_stage},
     {"strand", OBJECT, "", "strand", &strand},
 };
-static const struct wb_schema_object rig = {"rig", "The rig, as its file says.", ROWS(rig_rows)};
+static WB_KEYS(rig, "rig", "The rig, as its file says.");
 
-static const struct wb_schema_row aligned_rows[] = {
+static const struct wb_key wb_schema_aligned_rows[] = {
     {"source", TEXT, "", "test on the bench, or on a virtual rig"},
     {"tool", OBJECT, "", "program that aligned the recording", &wb_schema_tool},
     {"settings", OBJECT, "", "settings of the alignment", &settings},
@@ -357,5 +332,4 @@ static const struct wb_schema_row aligned_rows[] = {
     {"largest_deflection_mm", NUMBER, "mm", "largest deflection"},
     {"complete", FLAG, "", "false: there are gaps, or the test was cut short"},
 };
-const struct wb_schema_object wb_schema_aligned = {
-    "aligned_keys", "Keys of the dataset of a recording.", ROWS(aligned_rows)};
+WB_KEYS(wb_schema_aligned, "aligned_keys", "Keys of the dataset of a recording.");

@@ -1,38 +1,35 @@
 /* Keys that several files have, and those of reports of all kinds. */
 #include "analysis/schema/report_keys.h"
 
-static const struct wb_schema_row tool_rows[] = {
+static const struct wb_key wb_schema_tool_rows[] = {
     {"name", TEXT, "", "program and command"},
     {"version", TEXT, "", "version of the program"},
     {"revision", TEXT, "", "revision of the sources that the program was built from"},
     {"confirmed_by_revision", TEXT | OPTIONAL, "",
      "of a stored simulation: a later revision, whose results are the same within the tolerances"},
 };
-const struct wb_schema_object wb_schema_tool = {"tool", "The program that wrote the file.",
-                                                ROWS(tool_rows)};
+WB_KEYS(wb_schema_tool, "tool", "The program that wrote the file.");
 
-static const struct wb_schema_row campaign_rows[] = {
+static const struct wb_key wb_schema_campaign_rows[] = {
     {"file", TEXT, "", "name of the campaign file"},
     {"sha256", TEXT, "", "SHA-256 of the campaign file"},
 };
-const struct wb_schema_object wb_schema_campaign = {"campaign", "The campaign file.",
-                                                    ROWS(campaign_rows)};
+WB_KEYS(wb_schema_campaign, "campaign", "The campaign file.");
 
-static const struct wb_schema_row excluded_rows[] = {
+static const struct wb_key wb_schema_excluded_rows[] = {
     {"by", TEXT, "", "who excluded the test"},
     {"reason", TEXT, "", "why the test was excluded"},
     {"date_utc", TEXT | UNKNOWN, "", "when the test was excluded"},
 };
-const struct wb_schema_object wb_schema_excluded = {
-    "excluded", "The exclusion of a test, from the index of recordings.", ROWS(excluded_rows)};
+WB_KEYS(wb_schema_excluded, "excluded", "The exclusion of a test, from the index of recordings.");
 
-static const struct wb_schema_row sum_rows[] = {
+static const struct wb_key wb_schema_sum_rows[] = {
     {"file", TEXT, "", "name of the file"},
     {"sha256", TEXT, "", "SHA-256 of the file"},
 };
-const struct wb_schema_object wb_schema_sum = {"sum", "A file and its checksum.", ROWS(sum_rows)};
+WB_KEYS(wb_schema_sum, "sum", "A file and its checksum.");
 
-static const struct wb_schema_row machine_rows[] = {
+static const struct wb_key wb_schema_machine_rows[] = {
     {"name", TEXT, "", "name of the machine"},
     {"kind", TEXT, "", "kind of test", .choices = "cantilever|three-point|tensile"},
     {"span_mm", NUMBER | OPTIONAL, "mm", "distance between the axes of the rollers"},
@@ -49,29 +46,26 @@ static const struct wb_schema_row machine_rows[] = {
      "compliance of machine, load cell and fixture; a list: least and largest"},
     {"speed_mm_s", BAND | OPTIONAL, "mm/s", "speed of the travel; a list: least and largest"},
 };
-const struct wb_schema_object wb_schema_machine = {
-    "machine", "The testing machine, as its machine file describes it.", ROWS(machine_rows)};
+WB_KEYS(wb_schema_machine, "machine", "The testing machine, as its machine file describes it.");
 
-static const struct wb_schema_row interval_rows[] = {
+static const struct wb_key interval_rows[] = {
     {"median", NUMBER | UNKNOWN, "", "median of the runs"},
     {"low", NUMBER | UNKNOWN, "", "lower end of the band of 90 %, with the model's error"},
     {"high", NUMBER | UNKNOWN, "", "upper end of that band"},
     {"runs_low", NUMBER | UNKNOWN, "", "5 % quantile of the runs alone"},
     {"runs_high", NUMBER | UNKNOWN, "", "95 % quantile of the runs alone"},
 };
-static const struct wb_schema_object interval = {
-    "band", "A band of a predicted number, in the unit of its key.", ROWS(interval_rows)};
+static WB_KEYS(interval, "band", "A band of a predicted number, in the unit of its key.");
 
-static const struct wb_schema_row group_rows[] = {
+static const struct wb_key group_rows[] = {
     {"group", TEXT, "", "group of inputs"},
     {"share", NUMBER, "", "share of the ranks' variance that this group explains"},
     {"share_low", NUMBER, "", "lower end of its interval of 90 %"},
     {"share_high", NUMBER, "", "upper end of its interval of 90 %"},
 };
-static const struct wb_schema_object group = {
-    "ranking_group", "The influence of a group of inputs.", ROWS(group_rows)};
+static WB_KEYS(group, "ranking_group", "The influence of a group of inputs.");
 
-static const struct wb_schema_row ranking_rows[] = {
+static const struct wb_key ranking_rows[] = {
     {"of", TEXT, "", "result that the ranking is of", .choices = "force|deflection_springback"},
     {"deflection_mm", NUMBER | UNKNOWN, "mm", "deflection at which the result is taken"},
     {"R2", NUMBER | UNKNOWN, "", "share of the variance that ranks explain"},
@@ -79,10 +73,9 @@ static const struct wb_schema_row ranking_rows[] = {
     {"R2_high", NUMBER | UNKNOWN, "", "upper end of its interval"},
     {"groups", OBJECT | LIST | OPTIONAL, "", "the groups of inputs; only from R2 = 0.9 on", &group},
 };
-static const struct wb_schema_object ranking = {
-    "ranking", "Which inputs the width of a band depends on.", ROWS(ranking_rows)};
+static WB_KEYS(ranking, "ranking", "Which inputs the width of a band depends on.");
 
-static const struct wb_schema_row case_rows[] = {
+static const struct wb_key of_case_rows[] = {
     {"case", TEXT, "", "`file`, or the name of a scenario or of a combination of the sweep"},
     {"wires", INTEGER, "", "number of wires"},
     {"packing", TEXT, "", "packing of the wires"},
@@ -99,10 +92,9 @@ static const struct wb_schema_row case_rows[] = {
      &interval},
     {"ranking", OBJECT | LIST, "", "which inputs the bands depend on", &ranking},
 };
-static const struct wb_schema_object of_case = {"prediction_case", "A case that was predicted.",
-                                                ROWS(case_rows)};
+static WB_KEYS(of_case, "prediction_case", "A case that was predicted.");
 
-static const struct wb_schema_row uncertainty_rows[] = {
+static const struct wb_key wb_schema_uncertainty_rows[] = {
     {"confidence", NUMBER, "", "probability of the bands"},
     {"model_error", NUMBER, "", "standard deviation of the model's error, of the largest value"},
     {"runs", INTEGER, "", "runs of each case"},
@@ -111,20 +103,18 @@ static const struct wb_schema_row uncertainty_rows[] = {
     {"laws_of_wires", TEXT | LIST, "", "source of the law of each kind of wire"},
     {"cases", OBJECT | LIST, "", "the cases", &of_case},
 };
-const struct wb_schema_object wb_schema_uncertainty = {
-    "uncertainty", "Bands of a bundle's prediction.", ROWS(uncertainty_rows)};
+WB_KEYS(wb_schema_uncertainty, "uncertainty", "Bands of a bundle's prediction.");
 
 /* --- reports of all kinds --- */
 
-static const struct wb_schema_row amends_rows[] = {
+static const struct wb_key amends_rows[] = {
     {"report", TEXT, "", "number of the report that this one replaces"},
     {"issued", TEXT, "", "date of that report"},
     {"why", TEXT, "", "what changed"},
 };
-static const struct wb_schema_object amends = {"amends", "The report that this one replaces.",
-                                               ROWS(amends_rows)};
+static WB_KEYS(amends, "amends", "The report that this one replaces.");
 
-static const struct wb_schema_row laboratory_rows[] = {
+static const struct wb_key laboratory_rows[] = {
     {"report", TEXT | OPTIONAL, "", "number of the report"},
     {"name", TEXT | OPTIONAL, "", "name of the laboratory"},
     {"address", TEXT | OPTIONAL, "", "address of the laboratory"},
@@ -146,17 +136,16 @@ static const struct wb_schema_row laboratory_rows[] = {
     {"amends", OBJECT | OPTIONAL, "", "report that this one replaces", &amends},
     {"missing", TEXT | LIST, "", "required fields that the campaign file lacks"},
 };
-static const struct wb_schema_object laboratory = {
-    "laboratory", "The fields of a laboratory, as the campaign file has them.",
-    ROWS(laboratory_rows)};
+static WB_KEYS(laboratory, "laboratory",
+               "The fields of a laboratory, as the campaign file has them.");
 
-static const struct wb_schema_row end_rows[] = {
+static const struct wb_key report_end_rows[] = {
     {"laboratory", OBJECT | OPTIONAL, "", "fields of a laboratory", &laboratory},
     {"files", TEXT | LIST, "", "files of the report, relative to its folder"},
 };
-static const struct wb_schema_object report_end = {"report_end", "", ROWS(end_rows)};
+static WB_KEYS(report_end, "report_end", "");
 
-static const struct wb_schema_row head_rows[] = {
+static const struct wb_key wb_schema_report_head_rows[] = {
     {"title", TEXT, "", "title of the campaign"},
     {"data", TEXT, "", "origin of the data",
      .choices = "measured|measured (virtual rig)|simulation"},
@@ -167,14 +156,13 @@ static const struct wb_schema_row head_rows[] = {
     {"limit_exceeded", FLAG, "", "true: a limit of the campaign is exceeded (exit code 4)"},
     {.of = &report_end},
 };
-const struct wb_schema_object wb_schema_report_head = {"report_head", "", ROWS(head_rows)};
+WB_KEYS(wb_schema_report_head, "report_head", "");
 
-static const struct wb_schema_row simulation_rows[] = {
+static const struct wb_key wb_schema_simulation_state_rows[] = {
     {"dataset", TEXT, "", "name of the dataset"},
     {"state", TEXT, "", "whether the dataset is used",
      .choices = "not wanted|missing|outdated|refused|used"},
     {"command", TEXT, "", "command that computes it"},
     {"problem", TEXT | OPTIONAL, "", "why it is not used"},
 };
-const struct wb_schema_object wb_schema_simulation_state = {"simulation_state", "",
-                                                            ROWS(simulation_rows)};
+WB_KEYS(wb_schema_simulation_state, "simulation_state", "");

@@ -1,7 +1,7 @@
 /* Keys of a calibration on whole cycles, in report.json and in `calibrate --json`. */
-#include "analysis/schema/row.h"
+#include "analysis/schema/tables.h"
 
-static const struct wb_schema_row rank_rows[] = {
+static const struct wb_key rank_rows[] = {
     {"law", TEXT, "", "name of the law"},
     {"numbers", INTEGER, "", "number of its free parameters"},
     {"misfit", NUMBER | UNKNOWN, "", "RMS of the force residuals over F_max"},
@@ -13,10 +13,9 @@ static const struct wb_schema_row rank_rows[] = {
     {"parameters", OBJECT | OPTIONAL, "", "the law's numbers, of a law that counts",
      &wb_schema_law_of_json},
 };
-static const struct wb_schema_object rank = {"ranked_law", "A law that was fitted.",
-                                             ROWS(rank_rows)};
+static WB_KEYS(rank, "ranked_law", "A law that was fitted.");
 
-static const struct wb_schema_row rule_rows[] = {
+static const struct wb_key rule_rows[] = {
     {"chosen", TEXT, "", "name of the chosen law"},
     {"supported", FLAG, "", "the misfit of the chosen law is at most `largest_supported_misfit`"},
     {"largest_supported_misfit", NUMBER, "", "limit of that misfit, over F_max"},
@@ -27,22 +26,20 @@ static const struct wb_schema_row rule_rows[] = {
      "number of independent residuals of a specimen; residuals of neighbours are correlated"},
     {"ranked", OBJECT | LIST, "", "all laws that were fitted, the best first", &rank},
 };
-static const struct wb_schema_object rule = {"hardening_rule", "The choice of the law.",
-                                             ROWS(rule_rows)};
+static WB_KEYS(rule, "hardening_rule", "The choice of the law.");
 
-static const struct wb_schema_row equivalent_rows[] = {
+static const struct wb_key equivalent_rows[] = {
     {"youngs_modulus_MPa", NUMBER | UNKNOWN, "MPa", "Young's modulus E"},
     {"yield_stress_MPa", NUMBER | UNKNOWN, "MPa", "yield stress sigma_Y"},
     {"strength_coefficient_MPa", NUMBER | UNKNOWN, "MPa", "strength coefficient K"},
     {"hardening_exponent", NUMBER | UNKNOWN, "", "hardening exponent n"},
     {"moment_misfit", NUMBER | UNKNOWN, "", "RMS of the relative differences of the moment"},
 };
-static const struct wb_schema_object equivalent = {
-    "ludwik_equivalent",
-    "Ludwik's law with isotropic hardening that has the same moments on a first loading.",
-    ROWS(equivalent_rows)};
+static WB_KEYS(
+    equivalent, "ludwik_equivalent",
+    "Ludwik's law with isotropic hardening that has the same moments on a first loading.");
 
-static const struct wb_schema_row identifiable_rows[] = {
+static const struct wb_key identifiable_rows[] = {
     {"strength_coefficient", FLAG, "", "the data determine K of a Ludwik law"},
     {"hardening_exponent", FLAG, "", "the data determine n of a Ludwik law"},
     {"ln_strength_error", NUMBER | UNKNOWN, "",
@@ -52,17 +49,15 @@ static const struct wb_schema_row identifiable_rows[] = {
     {"travel_share", NUMBER | UNKNOWN, "",
      "travel over free length, the smallest of the specimens"},
 };
-static const struct wb_schema_object identifiable = {
-    "identifiable", "Which numbers of a Ludwik law the data determine.", ROWS(identifiable_rows)};
+static WB_KEYS(identifiable, "identifiable", "Which numbers of a Ludwik law the data determine.");
 
-static const struct wb_schema_row correlation_rows[] = {
+static const struct wb_key correlation_rows[] = {
     {"numbers", TEXT | LIST, "", "names of the law's free parameters"},
     {"matrix", NUMBER | LIST | UNKNOWN, "", "their correlations, row by row"},
 };
-static const struct wb_schema_object correlation = {
-    "law_correlation", "The correlations of a law's parameters.", ROWS(correlation_rows)};
+static WB_KEYS(correlation, "law_correlation", "The correlations of a law's parameters.");
 
-static const struct wb_schema_row specimen_rows[] = {
+static const struct wb_key specimen_rows[] = {
     {"sample", INTEGER, "", "number of the piece"},
     {"length_mm", NUMBER, "mm", "free length"},
     {"flexural_rigidity_N_mm2", NUMBER | UNKNOWN, "N mm2", "EI at zero curvature"},
@@ -84,10 +79,9 @@ static const struct wb_schema_row specimen_rows[] = {
     {"law_correlation", OBJECT, "", "correlations of the law's parameters", &correlation},
     {"ludwik_equivalent", OBJECT, "", "Ludwik equivalent of the specimen", &equivalent},
 };
-static const struct wb_schema_object specimen = {"cycle_specimen", "A specimen by itself.",
-                                                 ROWS(specimen_rows)};
+static WB_KEYS(specimen, "cycle_specimen", "A specimen by itself.");
 
-static const struct wb_schema_row contribution_rows[] = {
+static const struct wb_key contribution_rows[] = {
     {"of", TEXT, "",
      "source of the uncertainty: `specimens`, `fits`, `law`, or what all specimens share"},
     {"standard_uncertainty", NUMBER | UNKNOWN, "", "of the logarithm of the quantity"},
@@ -97,10 +91,9 @@ static const struct wb_schema_row contribution_rows[] = {
     {"sensitivity_1_mm", NUMBER | UNKNOWN | OPTIONAL, "1/mm",
      "change of the logarithm by a change of the marker offset"},
 };
-static const struct wb_schema_object contribution = {
-    "contribution", "A contribution to the uncertainty of a quantity.", ROWS(contribution_rows)};
+static WB_KEYS(contribution, "contribution", "A contribution to the uncertainty of a quantity.");
 
-static const struct wb_schema_row budget_rows[] = {
+static const struct wb_key budget_rows[] = {
     {"quantity", TEXT, "", "the quantity",
      .choices = "flexural_rigidity|residual_curvature_ratio|loop_energy|"
                 "deflection_springback|moment|secant_stiffness|"
@@ -112,10 +105,9 @@ static const struct wb_schema_row budget_rows[] = {
     {"coverage_factor", NUMBER | UNKNOWN, "", "coverage factor for 95 %"},
     {"contributions", OBJECT | LIST, "", "contributions", &contribution},
 };
-static const struct wb_schema_object budget = {"budget", "The uncertainty budget of a quantity.",
-                                               ROWS(budget_rows)};
+static WB_KEYS(budget, "budget", "The uncertainty budget of a quantity.");
 
-static const struct wb_schema_row cycle_rows[] = {
+static const struct wb_key wb_schema_cycle_rows[] = {
     {.type = ESTIMATES, .quantities = true},
     {"flexural_rigidity_resolved", FLAG, "",
      "EI at zero curvature is within 2 % of a stiffness that the data resolve"},
@@ -131,4 +123,4 @@ static const struct wb_schema_row cycle_rows[] = {
     {"specimens", OBJECT | LIST, "", "each specimen by itself", &specimen},
     {"budget", OBJECT | LIST, "", "uncertainty budget of each quantity", &budget},
 };
-const struct wb_schema_object wb_schema_cycle = {"cycle_keys", "", ROWS(cycle_rows)};
+WB_KEYS(wb_schema_cycle, "cycle_keys", "");

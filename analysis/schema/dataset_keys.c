@@ -1,8 +1,8 @@
 /* Keys of dataset.json, but those of alignment (align_keys.c) and of simulations
  * (simulation_keys.c). */
-#include "analysis/schema/row.h"
+#include "analysis/schema/tables.h"
 
-static const struct wb_schema_row test_rows[] = {
+static const struct wb_key test_rows[] = {
     {"wire", TEXT, "", "name of the product"},
     {"sample", INTEGER, "", "number of the piece; 0: none"},
     {"length_mm", NUMBER, "mm",
@@ -36,11 +36,10 @@ static const struct wb_schema_row test_rows[] = {
     {"kind", TEXT | OPTIONAL, "", "kind of test; absent: cantilever",
      .choices = "three-point|tensile"},
 };
-static const struct wb_schema_object test = {
-    "test", "What other commands need of the test; an absent uncertainty is not stated.",
-    ROWS(test_rows)};
+static WB_KEYS(test, "test",
+               "What other commands need of the test; an absent uncertainty is not stated.");
 
-static const struct wb_schema_row piece_rows[] = {
+static const struct wb_key piece_rows[] = {
     {"series", TEXT | OPTIONAL, "", "series that the test belongs to"},
     {"outer_diameter_mm", NUMBER | OPTIONAL, "mm", "outer diameter"},
     {"length_mm", NUMBER | OPTIONAL, "mm", "length of the piece"},
@@ -52,28 +51,25 @@ static const struct wb_schema_row piece_rows[] = {
      .choices = "conductor|jacket|tape"},
     {"area_mm2", NUMBER | OPTIONAL, "mm2", "of a tensile test: area of its section"},
 };
-static const struct wb_schema_object piece = {
-    "test_piece", "What is known of the specimen of a testing machine besides `test`.",
-    ROWS(piece_rows)};
+static WB_KEYS(piece, "test_piece",
+               "What is known of the specimen of a testing machine besides `test`.");
 
-static const struct wb_schema_row column_rows[] = {
+static const struct wb_key column_rows[] = {
     {"column", INTEGER, "", "number of the column, from 1"},
     {"header", TEXT, "", "name of the column in the file"},
     {"unit", TEXT, "", "unit of the column"},
 };
-static const struct wb_schema_object column = {"import_column", "A column of the imported file.",
-                                               ROWS(column_rows)};
+static WB_KEYS(column, "import_column", "A column of the imported file.");
 
-static const struct wb_schema_row columns_rows[] = {
+static const struct wb_key columns_rows[] = {
     {"time", OBJECT | OPTIONAL, "", "column of time", &column},
     {"force", OBJECT | OPTIONAL, "", "column of force", &column},
     {"travel", OBJECT | OPTIONAL, "", "column of travel or elongation", &column},
     {"strain", OBJECT | OPTIONAL, "", "column of strain", &column},
 };
-static const struct wb_schema_object columns = {
-    "import_columns", "The columns of the imported file that are used.", ROWS(columns_rows)};
+static WB_KEYS(columns, "import_columns", "The columns of the imported file that are used.");
 
-static const struct wb_schema_row import_rows[] = {
+static const struct wb_key import_rows[] = {
     {"file", TEXT, "", "name of the original file"},
     {"bytes", INTEGER, "", "size of the original file"},
     {"sha256", TEXT, "", "SHA-256 of the original file"},
@@ -99,24 +95,22 @@ static const struct wb_schema_row import_rows[] = {
     {"force_turned", FLAG, "", "the machine counts force downwards; the sign was changed"},
     {"travel_turned", FLAG, "", "the machine counts travel downwards; the sign was changed"},
 };
-static const struct wb_schema_object import = {"force_import", "The file of a testing machine.",
-                                               ROWS(import_rows)};
+static WB_KEYS(import, "force_import", "The file of a testing machine.");
 
-static const struct wb_schema_row common_rows[] = {
+static const struct wb_key common_rows[] = {
     {"schema", INTEGER, "", "layout of the file, 1"},
     {"name", TEXT, "", "name of the dataset"},
     {"test", OBJECT, "", "what other commands need of the test", &test},
 };
-static const struct wb_schema_object common = {"dataset_keys", "", ROWS(common_rows)};
+static WB_KEYS(common, "dataset_keys", "");
 
-static const struct wb_schema_row aligned_rows[] = {
+static const struct wb_key aligned_rows[] = {
     {.of = &common},
     {.of = &wb_schema_aligned},
 };
-static const struct wb_schema_object aligned = {
-    "dataset_of_recording", "The dataset of a recording, by `align`.", ROWS(aligned_rows)};
+static WB_KEYS(aligned, "dataset_of_recording", "The dataset of a recording, by `align`.");
 
-static const struct wb_schema_row imported_rows[] = {
+static const struct wb_key imported_rows[] = {
     {.of = &common},
     {"tool", OBJECT, "", "program that imported the file", &wb_schema_tool},
     {"import", OBJECT, "", "the file", &import},
@@ -124,11 +118,10 @@ static const struct wb_schema_row imported_rows[] = {
     {"machine", OBJECT, "", "testing machine", &wb_schema_machine},
     {"test_piece", OBJECT, "", "what else is known of the specimen", &piece},
 };
-static const struct wb_schema_object imported = {
-    "dataset_of_machine", "The dataset of a testing machine, by `import force`.",
-    ROWS(imported_rows)};
+static WB_KEYS(imported, "dataset_of_machine",
+               "The dataset of a testing machine, by `import force`.");
 
-static const struct wb_schema_row simulated_rows[] = {
+static const struct wb_key simulated_rows[] = {
     {.of = &common},
     {"complete", FLAG | OPTIONAL, "",
      "whether the whole loading was computed; of `cantilever` and `bending3p` see `converged`"},
@@ -137,10 +130,9 @@ static const struct wb_schema_row simulated_rows[] = {
     {"machine", OBJECT | OPTIONAL, "", "of `bending3p`: the testing machine", &wb_schema_machine},
     {"test_piece", OBJECT | OPTIONAL, "", "of `bending3p`: the specimen", &piece},
 };
-static const struct wb_schema_object simulated = {
-    "dataset_of_simulation", "The dataset of a simulation, by `solve`.", ROWS(simulated_rows)};
+static WB_KEYS(simulated, "dataset_of_simulation", "The dataset of a simulation, by `solve`.");
 
-static const struct wb_schema_object *const kinds[] = {&aligned, &imported, &simulated, NULL};
-const struct wb_schema_object wb_schema_dataset = {
+static const struct wb_keys *const kinds[] = {&aligned, &imported, &simulated, NULL};
+const struct wb_keys wb_schema_dataset = {
     "dataset", "A dataset comes from a recording, a testing machine or a simulation.",
     .alternatives = kinds};

@@ -1,37 +1,33 @@
 /* Keys of laws: in JSON documents, and in the block `law` of properties and wire files. */
-#include "analysis/schema/row.h"
+#include "analysis/schema/tables.h"
 
-static const struct wb_schema_row part_rows[] = {
+static const struct wb_key part_rows[] = {
     {"modulus_MPa", NUMBER, "MPa", "modulus of the part"},
     {"yield_strain", NUMBER | UNKNOWN, "",
      "strain at which the part yields; null: it stays elastic"},
 };
-static const struct wb_schema_object part = {
-    "law_part", "One of the elastic-plastic parts in parallel.", ROWS(part_rows)};
+static WB_KEYS(part, "law_part", "One of the elastic-plastic parts in parallel.");
 
-static const struct wb_schema_row back_rows[] = {
+static const struct wb_key back_rows[] = {
     {"modulus_MPa", NUMBER, "MPa", "C, the initial modulus of the back stress"},
     {"recovery", NUMBER, "", "gamma, the rate of recovery; 0: the back stress does not saturate"},
 };
-static const struct wb_schema_object back = {"law_back_stress",
-                                             "One back stress of Chaboche's law.", ROWS(back_rows)};
+static WB_KEYS(back, "law_back_stress", "One back stress of Chaboche's law.");
 
-static const struct wb_schema_row maxwell_rows[] = {
+static const struct wb_key maxwell_rows[] = {
     {"modulus_MPa", NUMBER, "MPa", "modulus of the element"},
     {"time_s", NUMBER, "s", "relaxation time"},
 };
-static const struct wb_schema_object maxwell = {"law_maxwell", "A Maxwell element beside the law.",
-                                                ROWS(maxwell_rows)};
+static WB_KEYS(maxwell, "law_maxwell", "A Maxwell element beside the law.");
 
-static const struct wb_schema_row relaxation_rows[] = {
+static const struct wb_key relaxation_rows[] = {
     {"strain_rate_1_s", NUMBER, "1/s",
      "strain rate of the outer fibre at which moments are stated; 0: of the relaxed law"},
     {"elements", OBJECT | LIST, "", "one or two Maxwell elements", &maxwell},
 };
-static const struct wb_schema_object relaxation = {
-    "law_relaxation", "The relaxation of a wire that relaxes.", ROWS(relaxation_rows)};
+static WB_KEYS(relaxation, "law_relaxation", "The relaxation of a wire that relaxes.");
 
-static const struct wb_schema_row number_rows[] = {
+static const struct wb_key wb_schema_law_numbers_rows[] = {
     {"relaxation", OBJECT | OPTIONAL, "", "Maxwell elements, of a wire that relaxes", &relaxation},
     {"yield_stress_MPa", NUMBER | OPTIONAL, "MPa",
      "sigma_Y of Ludwik's law; initial yield stress of Chaboche's law"},
@@ -44,8 +40,7 @@ static const struct wb_schema_row number_rows[] = {
     {"rate", NUMBER | OPTIONAL, "", "b of Chaboche's law, the rate of that growth"},
     {"back_stresses", OBJECT | LIST | OPTIONAL, "", "back stresses of Chaboche's law", &back},
 };
-const struct wb_schema_object wb_schema_law_numbers = {
-    "law_numbers", "The numbers of a law, by its form.", ROWS(number_rows)};
+WB_KEYS(wb_schema_law_numbers, "law_numbers", "The numbers of a law, by its form.");
 
 #define FORMS "ludwik|parallel|chaboche"
 #define RULES "isotropic|kinematic|mixed|combined"
@@ -54,7 +49,7 @@ const struct wb_schema_object wb_schema_law_numbers = {
     "combined "                                                                                    \
     "hardening a share of the hardening stress or of a part's modulus"
 
-static const struct wb_schema_row json_rows[] = {
+static const struct wb_key wb_schema_law_of_json_rows[] = {
     {"form", TEXT, "", "form of the curve of the first loading", .choices = FORMS},
     {"hardening", TEXT, "", "hardening rule", .choices = RULES},
     {"isotropic_share", NUMBER, "", SHARE},
@@ -62,48 +57,43 @@ static const struct wb_schema_row json_rows[] = {
     {"poissons_ratio", NUMBER, "", "Poisson's ratio"},
     {NULL, 0, "", "", &wb_schema_law_numbers},
 };
-const struct wb_schema_object wb_schema_law_of_json = {"law", "A law of the homogenised wire.",
-                                                       ROWS(json_rows)};
+WB_KEYS(wb_schema_law_of_json, "law", "A law of the homogenised wire.");
 
-static const struct wb_schema_row ludwik_rows[] = {
+static const struct wb_key wb_schema_ludwik_rows[] = {
     {"youngs_modulus_MPa", NUMBER, "MPa", "Young's modulus E, homogenised over the outer diameter"},
     {"yield_stress_MPa", NUMBER, "MPa", "yield stress sigma_Y"},
     {"strength_coefficient_MPa", NUMBER, "MPa",
      "strength coefficient K; the stress is sigma_Y + K ep^n beyond yield"},
     {"hardening_exponent", NUMBER, "", "hardening exponent n"},
 };
-const struct wb_schema_object wb_schema_ludwik = {"ludwik", "The four numbers of Ludwik's law.",
-                                                  ROWS(ludwik_rows)};
+WB_KEYS(wb_schema_ludwik, "ludwik", "The four numbers of Ludwik's law.");
 
 /* --- in files --- */
 
-static const struct wb_schema_row file_part_rows[] = {
+static const struct wb_key file_part_rows[] = {
     {"modulus_MPa", NUMBER, "MPa", "modulus of the part"},
     {"yield_strain", NUMBER | OPTIONAL, "",
      "strain at which the part yields; absent: the last part stays elastic"},
 };
-static const struct wb_schema_object file_part = {
-    "file_law_part", "One of the elastic-plastic parts in parallel.", ROWS(file_part_rows)};
+static WB_KEYS(file_part, "file_law_part", "One of the elastic-plastic parts in parallel.");
 
-static const struct wb_schema_row file_chaboche_rows[] = {
+static const struct wb_key file_chaboche_rows[] = {
     {"youngs_modulus_MPa", NUMBER, "MPa", "Young's modulus E"},
     {"yield_stress_MPa", NUMBER, "MPa", "initial yield stress"},
     {"saturation_MPa", NUMBER | OPTIONAL, "MPa", "Q, the growth of the yield stress at saturation"},
     {"rate", NUMBER | OPTIONAL, "", "b, the rate of that growth"},
     {"back_stresses", OBJECT | LIST | OPTIONAL, "", "one to three back stresses", &back},
 };
-static const struct wb_schema_object file_chaboche = {
-    "file_law_chaboche", "The numbers of Chaboche's law.", ROWS(file_chaboche_rows)};
+static WB_KEYS(file_chaboche, "file_law_chaboche", "The numbers of Chaboche's law.");
 
-static const struct wb_schema_row file_relaxation_rows[] = {
+static const struct wb_key file_relaxation_rows[] = {
     {"strain_rate_1_s", NUMBER | OPTIONAL, "1/s",
      "strain rate of the outer fibre at which moments are stated; 0 or absent: of the relaxed law"},
     {"elements", OBJECT | LIST, "", "one or two Maxwell elements", &maxwell},
 };
-static const struct wb_schema_object file_relaxation = {
-    "file_law_relaxation", "The relaxation of a wire that relaxes.", ROWS(file_relaxation_rows)};
+static WB_KEYS(file_relaxation, "file_law_relaxation", "The relaxation of a wire that relaxes.");
 
-static const struct wb_schema_row file_rows[] = {
+static const struct wb_key wb_schema_law_of_file_rows[] = {
     {"form", TEXT, "", "form of the curve of the first loading", .choices = FORMS},
     {"hardening", TEXT, "", "hardening rule", .choices = RULES},
     {"isotropic_share", NUMBER | OPTIONAL, "", SHARE},
@@ -113,5 +103,4 @@ static const struct wb_schema_row file_rows[] = {
     {"relaxation", OBJECT | OPTIONAL, "", "Maxwell elements, of a wire that relaxes",
      &file_relaxation},
 };
-const struct wb_schema_object wb_schema_law_of_file = {
-    "file_law", "The law of a wire, as in a wire file.", ROWS(file_rows)};
+WB_KEYS(wb_schema_law_of_file, "file_law", "The law of a wire, as in a wire file.");

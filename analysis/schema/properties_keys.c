@@ -1,8 +1,8 @@
 /* Keys of properties files; the reader is analysis/calibration/properties/properties_read.c. */
 #include "analysis/calibration/cycle/cycle_calibrate.h"
-#include "analysis/schema/row.h"
+#include "analysis/schema/tables.h"
 
-static const struct wb_schema_row deviation_rows[] = {
+static const struct wb_key deviations_rows[] = {
     {"youngs_modulus_MPa", NUMBER | OPTIONAL, "MPa", "standard uncertainty of E"},
     {"yield_stress_MPa", NUMBER | OPTIONAL, "MPa", "standard uncertainty of sigma_Y"},
     {"strength_coefficient_factor", NUMBER | OPTIONAL, "",
@@ -11,28 +11,26 @@ static const struct wb_schema_row deviation_rows[] = {
      "of older files: standard uncertainty of K; not used"},
     {"hardening_exponent", NUMBER | OPTIONAL, "", "standard uncertainty of n"},
 };
-static const struct wb_schema_object deviations = {
-    "deviations", "Standard uncertainties from the scatter between samples.", ROWS(deviation_rows)};
+static WB_KEYS(deviations, "deviations",
+               "Standard uncertainties from the scatter between samples.");
 
-static const struct wb_schema_row dataset_rows[] = {
+static const struct wb_key dataset_rows[] = {
     {"folder", TEXT | OPTIONAL, "", "folder of the dataset, as given"},
     {"force_deflection_sha256", TEXT | OPTIONAL, "", "SHA-256 of its force_deflection.csv"},
     {"recording", TEXT | OPTIONAL, "", "in the properties of a report: recording or machine file"},
     {"recording_sha256", TEXT | OPTIONAL, "", "SHA-256 of that file"},
 };
-static const struct wb_schema_object dataset = {
-    "properties_dataset", "Data that the calibration used.", ROWS(dataset_rows)};
+static WB_KEYS(dataset, "properties_dataset", "Data that the calibration used.");
 
-static const struct wb_schema_row settings_rows[] = {
+static const struct wb_key settings_rows[] = {
     {.type = OPTIONAL, .settings = &wb_cycle_calibrate_tables[0]},
     {.type = OPTIONAL, .settings = &wb_cycle_calibrate_tables[1]},
     {.type = OPTIONAL, .settings = &wb_cycle_calibrate_tables[2]},
 };
-static const struct wb_schema_object settings = {
-    "cycle_settings", "Settings of a calibration on whole cycles, as its options name them.",
-    ROWS(settings_rows)};
+static WB_KEYS(settings, "cycle_settings",
+               "Settings of a calibration on whole cycles, as its options name them.");
 
-static const struct wb_schema_row calibration_rows[] = {
+static const struct wb_key calibration_rows[] = {
     {"length_mm", NUMBER | OPTIONAL, "mm", "free length of the specimens"},
     {"loading", TEXT | OPTIONAL, "", "tests with a follower force; absent: others",
      .choices = "follower"},
@@ -66,28 +64,25 @@ static const struct wb_schema_row calibration_rows[] = {
     {"settings", OBJECT | OPTIONAL, "", "settings of a calibration on whole cycles", &settings},
     {"datasets", OBJECT | LIST | OPTIONAL, "", "data that the calibration used", &dataset},
 };
-static const struct wb_schema_object calibration = {
-    "properties_calibration", "How the properties were found.", ROWS(calibration_rows)};
+static WB_KEYS(calibration, "properties_calibration", "How the properties were found.");
 
-static const struct wb_schema_row rank_rows[] = {
+static const struct wb_key rank_rows[] = {
     {"law", TEXT, "", "name of the law"},
     {"misfit", NUMBER | OPTIONAL, "", "misfit over F_max"},
     {"weight", NUMBER | OPTIONAL, "", "weight among all laws"},
 };
-static const struct wb_schema_object rank = {"properties_ranked_law", "A law that was fitted.",
-                                             ROWS(rank_rows)};
+static WB_KEYS(rank, "properties_ranked_law", "A law that was fitted.");
 
-static const struct wb_schema_row rule_rows[] = {
+static const struct wb_key rule_rows[] = {
     {"chosen", TEXT | OPTIONAL, "", "name of the chosen law"},
     {"tested", FLAG | OPTIONAL, "", "unloading was measured, which tests the hardening rule"},
     {"supported", FLAG | OPTIONAL, "",
      "the law fits loading and unloading within 3 % of F_max; of three-point bending 0.5 %"},
     {"ranked", OBJECT | LIST | OPTIONAL, "", "all laws that were fitted, the best first", &rank},
 };
-static const struct wb_schema_object rule = {"properties_hardening_rule", "The choice of the law.",
-                                             ROWS(rule_rows)};
+static WB_KEYS(rule, "properties_hardening_rule", "The choice of the law.");
 
-static const struct wb_schema_row specimen_rows[] = {
+static const struct wb_key specimen_rows[] = {
     {"sample", INTEGER, "", "number of the piece"},
     {"length_mm", NUMBER, "mm", "free length"},
     {"bow_mm", NUMBER | OPTIONAL, "mm", "natural offset of the tip"},
@@ -99,11 +94,10 @@ static const struct wb_schema_row specimen_rows[] = {
     {.of = &wb_schema_ludwik},
     {"ludwik_misfit", NUMBER | OPTIONAL, "", "RMS of the relative differences of the moment"},
 };
-static const struct wb_schema_object specimen = {
-    "properties_specimen", "A specimen by itself; the four numbers are of its Ludwik equivalent.",
-    ROWS(specimen_rows)};
+static WB_KEYS(specimen, "properties_specimen",
+               "A specimen by itself; the four numbers are of its Ludwik equivalent.");
 
-static const struct wb_schema_row band_rows[] = {
+static const struct wb_key band_rows[] = {
     {"of", TEXT, "", "parameter of the bench that was changed"},
     {"value", NUMBER | OPTIONAL, "", "its value: a friction coefficient"},
     {"value_mm", NUMBER | OPTIONAL, "mm", "its value: a radius of the nose"},
@@ -111,10 +105,9 @@ static const struct wb_schema_row band_rows[] = {
     {"misfit", NUMBER | OPTIONAL, "", "misfit of that fit over F_max"},
     {"rigidity_ratio", NUMBER | OPTIONAL, "", "its EI over the EI above"},
 };
-static const struct wb_schema_object band = {
-    "bench_band", "The fits with an end of what the machine file leaves open.", ROWS(band_rows)};
+static WB_KEYS(band, "bench_band", "The fits with an end of what the machine file leaves open.");
 
-static const struct wb_schema_row test_rows[] = {
+static const struct wb_key test_rows[] = {
     {"sample", INTEGER, "", "number of the piece"},
     {"series", TEXT, "", "series that the test belongs to"},
     {"fitted", FLAG, "", "a law was fitted to the test"},
@@ -132,10 +125,9 @@ static const struct wb_schema_row test_rows[] = {
     {"largest_curvature_1_m", NUMBER | OPTIONAL, "1/m", "largest curvature"},
     {"wrapped_rad", NUMBER | OPTIONAL, "rad", "angle over which the wire lies on the nose"},
 };
-static const struct wb_schema_object test = {
-    "bending_test", "A three-point bending test by itself.", ROWS(test_rows)};
+static WB_KEYS(test, "bending_test", "A three-point bending test by itself.");
 
-static const struct wb_schema_row three_point_rows[] = {
+static const struct wb_key three_point_rows[] = {
     {"span_mm", NUMBER | OPTIONAL, "mm", "distance between the rollers"},
     {"roller_radius_mm", NUMBER | OPTIONAL, "mm", "radius of the rollers"},
     {"nose_radius_mm", NUMBER | OPTIONAL, "mm", "radius of the nose in the fits"},
@@ -147,11 +139,10 @@ static const struct wb_schema_row three_point_rows[] = {
     {"bands", OBJECT | LIST | OPTIONAL, "", "fits with the ends of what is not known", &band},
     {"tests", OBJECT | LIST | OPTIONAL, "", "each test by itself", &test},
 };
-static const struct wb_schema_object three_point = {
-    "three_point", "The bench and the tests of a calibration on three-point bending.",
-    ROWS(three_point_rows)};
+static WB_KEYS(three_point, "three_point",
+               "The bench and the tests of a calibration on three-point bending.");
 
-static const struct wb_schema_row old_ratio_rows[] = {
+static const struct wb_key old_ratio_rows[] = {
     {"value", NUMBER | OPTIONAL, "", "mean over the specimens"},
     {"low", NUMBER | OPTIONAL, "", "lower end of the 95 % confidence interval of the mean"},
     {"high", NUMBER | OPTIONAL, "", "upper end of that interval"},
@@ -159,10 +150,9 @@ static const struct wb_schema_row old_ratio_rows[] = {
     {"candidates_high", NUMBER | OPTIONAL, "", "largest value over these laws"},
     {"scatter", NUMBER | OPTIONAL, "", "standard deviation of the logarithm between specimens"},
 };
-static const struct wb_schema_object old_ratio = {
-    "springback_ratio", "The residual curvature ratio of older files.", ROWS(old_ratio_rows)};
+static WB_KEYS(old_ratio, "springback_ratio", "The residual curvature ratio of older files.");
 
-static const struct wb_schema_row properties_rows[] = {
+static const struct wb_key wb_schema_properties_rows[] = {
     {"schema", INTEGER | OPTIONAL, "", "layout of the file, 1"},
     {"wire", TEXT, "", "name of the product"},
     {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
@@ -191,6 +181,5 @@ static const struct wb_schema_row properties_rows[] = {
      &three_point},
     {"calibration", OBJECT | OPTIONAL, "", "how the properties were found", &calibration},
 };
-const struct wb_schema_object wb_schema_properties = {
-    "properties", "The properties of a wire, from a calibration or by hand.",
-    ROWS(properties_rows)};
+WB_KEYS(wb_schema_properties, "properties",
+        "The properties of a wire, from a calibration or by hand.");

@@ -5,20 +5,18 @@
 
 /* --- recordings --- */
 
-static const struct wb_schema_row settings_rows[] = {
+static const struct wb_key settings_rows[] = {
     {.settings = &wb_calibrate_table, .applies = WB_CALIBRATE_REPORT},
 };
-static const struct wb_schema_object settings = {"report_settings", "Settings of the calibration.",
-                                                 ROWS(settings_rows)};
+static WB_KEYS(settings, "report_settings", "Settings of the calibration.");
 
-static const struct wb_schema_row limits_rows[] = {
+static const struct wb_key limits_rows[] = {
     {"calibration_rms_max", NUMBER | OPTIONAL, "", "limit of the RMS of calibrations over F_max"},
     {"validation_rms_max", NUMBER | OPTIONAL, "", "limit of the RMS of validations over F_max"},
 };
-static const struct wb_schema_object limits = {"report_limits", "Limits of the campaign.",
-                                               ROWS(limits_rows)};
+static WB_KEYS(limits, "report_limits", "Limits of the campaign.");
 
-static const struct wb_schema_row recording_rows[] = {
+static const struct wb_key recording_rows[] = {
     {"name", TEXT, "", "name of the recording"},
     {"wire", TEXT, "", "name of the product"},
     {"purpose", TEXT, "", "use of the recording", .choices = "calibration|validation"},
@@ -38,18 +36,16 @@ static const struct wb_schema_row recording_rows[] = {
     {"checks", OBJECT | OPTIONAL, "", "as in dataset.json", &wb_schema_checks},
     {"warnings", TEXT | LIST | OPTIONAL, "", "as in dataset.json"},
 };
-static const struct wb_schema_object recording = {
-    "report_recording", "A recording; the keys from `sample` on are of a used one.",
-    ROWS(recording_rows)};
+static WB_KEYS(recording, "report_recording",
+               "A recording; the keys from `sample` on are of a used one.");
 
-static const struct wb_schema_row published_rows[] = {
+static const struct wb_key published_rows[] = {
     {.of = &wb_schema_ludwik},
     {"source", TEXT, "", "source of the values"},
 };
-static const struct wb_schema_object published = {"published", "Published properties of a wire.",
-                                                  ROWS(published_rows)};
+static WB_KEYS(published, "published", "Published properties of a wire.");
 
-static const struct wb_schema_row measured_rows[] = {
+static const struct wb_key measured_rows[] = {
     {"deflection_mm", NUMBER | LIST, "mm", "deflections of the curves"},
     {"force_mN", NUMBER | LIST | UNKNOWN, "mN", "mean force of the samples"},
     {"lowest_mN", NUMBER | LIST | UNKNOWN, "mN", "lowest force of the samples"},
@@ -57,10 +53,9 @@ static const struct wb_schema_row measured_rows[] = {
     {"standard_deviation_mN", NUMBER | LIST | UNKNOWN, "mN",
      "standard deviation of the force between samples"},
 };
-static const struct wb_schema_object measured = {"measured_curve", "The mean curve of the samples.",
-                                                 ROWS(measured_rows)};
+static WB_KEYS(measured, "measured_curve", "The mean curve of the samples.");
 
-static const struct wb_schema_row computed_rows[] = {
+static const struct wb_key computed_rows[] = {
     {"rms_over_F_max", NUMBER | UNKNOWN, "", "RMS error over F_max"},
     {"rms_from_5mm_over_F_max", NUMBER | UNKNOWN, "", "the same of deflections from 5 mm on"},
     {"largest_error_over_F_max", NUMBER | UNKNOWN, "", "largest error over F_max"},
@@ -68,10 +63,9 @@ static const struct wb_schema_row computed_rows[] = {
     {"force_mN", NUMBER | LIST | UNKNOWN, "mN", "computed force"},
     {"error_over_F_max", NUMBER | LIST | UNKNOWN, "", "error of the force over F_max"},
 };
-static const struct wb_schema_object computed = {"computed_curve", "A computed curve.",
-                                                 ROWS(computed_rows)};
+static WB_KEYS(computed, "computed_curve", "A computed curve.");
 
-static const struct wb_schema_row comparison_rows[] = {
+static const struct wb_key comparison_rows[] = {
     {"samples", INTEGER | OPTIONAL, "", "number of samples"},
     {"length_mm", NUMBER | OPTIONAL, "mm", "free length"},
     {"F_max_mN", NUMBER | OPTIONAL, "mN", "F_max, the largest force of the mean curve"},
@@ -92,26 +86,25 @@ static const struct wb_schema_row comparison_rows[] = {
      "in reports of a laboratory: expanded uncertainty (95 %) of the RMS"},
     {"limit_kept", FLAG | OPTIONAL, "", "in reports of a laboratory: the limit is kept"},
 };
-static const struct wb_schema_object comparison = {"comparison_keys", "", ROWS(comparison_rows)};
+static WB_KEYS(comparison, "comparison_keys", "");
 
-static const struct wb_schema_row state_rows[] = {
+static const struct wb_key state_rows[] = {
     {"state", TEXT, "", "whether there is a result", .choices = "not wanted|missing|failed|done"},
     {"problem", TEXT | OPTIONAL, "", "why it is missing or failed"},
 };
-static const struct wb_schema_object state = {"state_keys", "", ROWS(state_rows)};
+static WB_KEYS(state, "state_keys", "");
 
-static const struct wb_schema_row uncertainties_rows[] = {
+static const struct wb_key uncertainties_rows[] = {
     {"youngs_modulus_MPa", NUMBER | UNKNOWN, "MPa", "of E"},
     {"yield_stress_MPa", NUMBER | UNKNOWN, "MPa", "of sigma_Y"},
     {"strength_coefficient_factor", NUMBER | UNKNOWN, "",
      "K lies between K divided by this factor and K times this factor"},
     {"hardening_exponent", NUMBER | UNKNOWN, "", "of n"},
 };
-static const struct wb_schema_object uncertainties = {
-    "standard_uncertainties", "Standard uncertainties from the scatter between samples.",
-    ROWS(uncertainties_rows)};
+static WB_KEYS(uncertainties, "standard_uncertainties",
+               "Standard uncertainties from the scatter between samples.");
 
-static const struct wb_schema_row search_rows[] = {
+static const struct wb_key search_rows[] = {
     {"first_strength_coefficient_MPa", NUMBER, "MPa", "initial guess of K"},
     {"first_hardening_exponent", NUMBER, "", "initial guess of n"},
     {"stopped_because", TEXT, "", "why the search ended"},
@@ -124,10 +117,9 @@ static const struct wb_schema_row search_rows[] = {
     {"error_over_F_max", NUMBER | LIST | UNKNOWN, "", "error of each iteration"},
     {"simplex_size", NUMBER | LIST | UNKNOWN, "", "size of the simplex in each iteration"},
 };
-static const struct wb_schema_object search = {"search", "The search for K and n.",
-                                               ROWS(search_rows)};
+static WB_KEYS(search, "search", "The search for K and n.");
 
-static const struct wb_schema_row calibration_rows[] = {
+static const struct wb_key calibration_rows[] = {
     {.of = &state},
     {"properties", OBJECT | OPTIONAL, "", "E, sigma_Y, K and n", &wb_schema_ludwik},
     {"standard_uncertainties", OBJECT | OPTIONAL, "", "their standard uncertainties",
@@ -139,55 +131,49 @@ static const struct wb_schema_row calibration_rows[] = {
     {.of = &comparison},
     {"search", OBJECT | OPTIONAL, "", "search for K and n", &search},
 };
-static const struct wb_schema_object calibration = {
-    "report_calibration", "The calibration of a wire; all keys are present where it is done.",
-    ROWS(calibration_rows)};
+static WB_KEYS(calibration, "report_calibration",
+               "The calibration of a wire; all keys are present where it is done.");
 
-static const struct wb_schema_row bound_rows[] = {
+static const struct wb_key bound_rows[] = {
     {"found", NUMBER | UNKNOWN, "", "value, in the unit of the key above"},
     {"bound", NUMBER | UNKNOWN, "", "bound of the value; null: not known"},
     {"exceeded", FLAG, "", "the value exceeds its bound"},
 };
-static const struct wb_schema_object bound = {"bound", "A value of a validation and its bound.",
-                                              ROWS(bound_rows)};
+static WB_KEYS(bound, "bound", "A value of a validation and its bound.");
 
-static const struct wb_schema_row bounds_rows[] = {
+static const struct wb_key bounds_rows[] = {
     {"loading", OBJECT, "", "RMS error on loading over F_max", &bound},
     {"unloading", OBJECT, "", "RMS error on unloading over F_max", &bound},
     {"residual_deflection_mm", OBJECT, "mm", "error of the residual deflection", &bound},
     {"shapes_mm", OBJECT, "mm", "RMS distance of the markers", &bound},
 };
-static const struct wb_schema_object bounds = {"bounds", "Bounds of a validation.",
-                                               ROWS(bounds_rows)};
+static WB_KEYS(bounds, "bounds", "Bounds of a validation.");
 
-static const struct wb_schema_row unloading_rows[] = {
+static const struct wb_key unloading_rows[] = {
     {"samples", INTEGER, "", "number of samples with unloading"},
     {"rms", NUMBER | UNKNOWN, "", "RMS error of the mean over F_max"},
     {"max_error", NUMBER | UNKNOWN, "", "largest error of the mean over F_max"},
     {"rms_of_samples", NUMBER | UNKNOWN, "", "RMS error of the single samples over F_max"},
     {"rule_untested", FLAG, "", "the calibration had no unloading to test the hardening rule"},
 };
-static const struct wb_schema_object unloading = {"unloading", "The prediction of the unloading.",
-                                                  ROWS(unloading_rows)};
+static WB_KEYS(unloading, "unloading", "The prediction of the unloading.");
 
-static const struct wb_schema_row residual_rows[] = {
+static const struct wb_key residual_rows[] = {
     {"measured", NUMBER | UNKNOWN, "mm", "measured residual deflection"},
     {"predicted", NUMBER | UNKNOWN, "mm", "predicted residual deflection"},
 };
-static const struct wb_schema_object residual = {
-    "residual_deflection", "Deflection where the force has returned to that at zero deflection.",
-    ROWS(residual_rows)};
+static WB_KEYS(residual, "residual_deflection",
+               "Deflection where the force has returned to that at zero deflection.");
 
-static const struct wb_schema_row loop_rows[] = {
+static const struct wb_key loop_rows[] = {
     {"cycle", INTEGER, "", "cycle, from 1"},
     {"samples", INTEGER, "", "number of samples"},
     {"measured", NUMBER | UNKNOWN, "mJ", "measured energy loss of the cycle"},
     {"predicted", NUMBER | UNKNOWN, "mJ", "predicted energy loss of the cycle"},
 };
-static const struct wb_schema_object loop = {"loop_energy", "The energy loss of a later cycle.",
-                                             ROWS(loop_rows)};
+static WB_KEYS(loop, "loop_energy", "The energy loss of a later cycle.");
 
-static const struct wb_schema_row validation_rows[] = {
+static const struct wb_key validation_rows[] = {
     {.of = &state},
     {.of = &comparison},
     {"rms_of_perfect_model_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
@@ -205,11 +191,10 @@ static const struct wb_schema_row validation_rows[] = {
     {"residual_deflection_mm", OBJECT | OPTIONAL, "mm", "residual deflection", &residual},
     {"loop_energy_mJ", OBJECT | LIST | OPTIONAL, "mJ", "energy loss of the later cycles", &loop},
 };
-static const struct wb_schema_object validation = {
-    "report_validation", "The validation of a wire; keys from `samples` on are present if done.",
-    ROWS(validation_rows)};
+static WB_KEYS(validation, "report_validation",
+               "The validation of a wire; keys from `samples` on are present if done.");
 
-static const struct wb_schema_row point_rows[] = {
+static const struct wb_key point_rows[] = {
     {"curvature_1_m", NUMBER, "1/m", "curvature by the markers"},
     {"curvature_deviation_1_m", NUMBER, "1/m", "standard uncertainty of the curvature"},
     {"moment_N_mm", NUMBER, "N mm", "moment by the strand's tension"},
@@ -217,27 +202,24 @@ static const struct wb_schema_row point_rows[] = {
     {"s_mm", NUMBER, "mm", "arc length of the place"},
     {"band", FLAG, "", "the wire is bent too little there: the point shows scatter only"},
 };
-static const struct wb_schema_object point = {
-    "moment_point", "A point of M over curvature, without a law.", ROWS(point_rows)};
+static WB_KEYS(point, "moment_point", "A point of M over curvature, without a law.");
 
-static const struct wb_schema_row cloud_rows[] = {
+static const struct wb_key cloud_rows[] = {
     {"sample", INTEGER, "", "number of the piece"},
     {"points", OBJECT | LIST, "", "points", &point},
 };
-static const struct wb_schema_object cloud = {"moment_points", "The points of a sample.",
-                                              ROWS(cloud_rows)};
+static WB_KEYS(cloud, "moment_points", "The points of a sample.");
 
-static const struct wb_schema_row later_rows[] = {
+static const struct wb_key later_rows[] = {
     {"sample", INTEGER, "", "number of the piece"},
     {"cycles", INTEGER, "", "number of cycles"},
     {"rms_over_F_max", NUMBER | UNKNOWN, "", "RMS error of the later cycles over F_max"},
     {"measured_energy_mJ", NUMBER | UNKNOWN, "mJ", "measured energy loss of the last cycle"},
     {"computed_energy_mJ", NUMBER | UNKNOWN, "mJ", "computed energy loss of the last cycle"},
 };
-static const struct wb_schema_object later = {
-    "later_cycles", "Later cycles, which the law was not fitted to.", ROWS(later_rows)};
+static WB_KEYS(later, "later_cycles", "Later cycles, which the law was not fitted to.");
 
-static const struct wb_schema_row valley_rows[] = {
+static const struct wb_key valley_rows[] = {
     {"strength_coefficient_MPa", NUMBER | UNKNOWN, "MPa", "K of the best fit"},
     {"hardening_exponent", NUMBER | UNKNOWN, "", "n of the best fit"},
     {"misfit", NUMBER | UNKNOWN, "", "misfit of the best fit"},
@@ -247,34 +229,31 @@ static const struct wb_schema_row valley_rows[] = {
     {"hardening_exponent_low", NUMBER | UNKNOWN, "", "least n within that limit"},
     {"hardening_exponent_high", NUMBER | UNKNOWN, "", "largest n within that limit"},
 };
-static const struct wb_schema_object valley = {
-    "ludwik_on_loading", "K and n of the first loading of the first sample.", ROWS(valley_rows)};
+static WB_KEYS(valley, "ludwik_on_loading", "K and n of the first loading of the first sample.");
 
-static const struct wb_schema_row pooled_rows[] = {
+static const struct wb_key pooled_rows[] = {
     {"low", NUMBER | UNKNOWN, "N mm2", "lower end of the 95 % confidence interval"},
     {"high", NUMBER | UNKNOWN, "N mm2", "upper end of that interval"},
     {"deviation_of_logarithm", NUMBER | UNKNOWN, "", "pooled standard deviation of ln EI"},
     {"degrees_of_freedom", INTEGER, "", "its degrees of freedom"},
 };
-static const struct wb_schema_object pooled = {
-    "pooled_interval", "The interval of EI with the scatter of all wires' samples.",
-    ROWS(pooled_rows)};
+static WB_KEYS(pooled, "pooled_interval",
+               "The interval of EI with the scatter of all wires' samples.");
 
-static const struct wb_schema_row remark_rows[] = {
+static const struct wb_key remark_rows[] = {
     {"severity", TEXT, "", "severity", .choices = "note|doubt"},
     {"sample", NUMBER | UNKNOWN, "", "number of the piece; null: all"},
     {"text", TEXT, "", "the remark"},
 };
-static const struct wb_schema_object remark = {"cycle_remark", "A remark on the calibration.",
-                                               ROWS(remark_rows)};
+static WB_KEYS(remark, "cycle_remark", "A remark on the calibration.");
 
 /* Of a cycle that is done, or not. */
-static const struct wb_schema_row prediction_rows[] = {
+static const struct wb_key prediction_rows[] = {
     {"prediction", OBJECT | OPTIONAL, "", "validation of this law", &validation},
 };
-static const struct wb_schema_object prediction = {"prediction_key", "", ROWS(prediction_rows)};
+static WB_KEYS(prediction, "prediction_key", "");
 
-static const struct wb_schema_row cycle_done_rows[] = {
+static const struct wb_key cycle_done_rows[] = {
     {"state", TEXT, "", "the calibration is done", .choices = "done"},
     {.of = &wb_schema_cycle},
     {"moment_curvature_measured", OBJECT | LIST, "", "M over curvature without a law", &cloud},
@@ -285,23 +264,21 @@ static const struct wb_schema_row cycle_done_rows[] = {
      "EI with the scatter of all wires' samples", &pooled},
     {.of = &prediction},
 };
-static const struct wb_schema_object cycle_done = {
-    "report_cycle", "The calibration on whole cycles.", ROWS(cycle_done_rows)};
+static WB_KEYS(cycle_done, "report_cycle", "The calibration on whole cycles.");
 
-static const struct wb_schema_row cycle_failed_rows[] = {
+static const struct wb_key cycle_failed_rows[] = {
     {"state", TEXT, "", "why there is no calibration", .choices = "missing|failed"},
     {"problem", TEXT, "", "why it is missing or failed"},
     {.of = &prediction},
 };
-static const struct wb_schema_object cycle_failed = {
-    "report_cycle_missing", "A calibration on whole cycles that is not there.",
-    ROWS(cycle_failed_rows)};
+static WB_KEYS(cycle_failed, "report_cycle_missing",
+               "A calibration on whole cycles that is not there.");
 
-static const struct wb_schema_object *const cycles[] = {&cycle_done, &cycle_failed, NULL};
-static const struct wb_schema_object cycle = {
-    "cycle", "The calibration on whole cycles, or why not.", .alternatives = cycles};
+static const struct wb_keys *const cycles[] = {&cycle_done, &cycle_failed, NULL};
+static const struct wb_keys cycle = {"cycle", "The calibration on whole cycles, or why not.",
+                                     .alternatives = cycles};
 
-static const struct wb_schema_row wire_rows[] = {
+static const struct wb_key wire_rows[] = {
     {"wire", TEXT, "", "name of the product"},
     {"label", TEXT, "", "name in the report"},
     {"conductor_diameter_mm", NUMBER, "mm", "diameter of the conductor; 0: no single one"},
@@ -312,10 +289,9 @@ static const struct wb_schema_row wire_rows[] = {
     {"validation", OBJECT, "", "validation of that calibration", &validation},
     {"cycle", OBJECT | OPTIONAL, "", "calibration on whole cycles", &cycle},
 };
-static const struct wb_schema_object wire = {"report_wire", "A wire of a campaign of recordings.",
-                                             ROWS(wire_rows)};
+static WB_KEYS(wire, "report_wire", "A wire of a campaign of recordings.");
 
-static const struct wb_schema_row recordings_rows[] = {
+static const struct wb_key recordings_rows[] = {
     {.of = &wb_schema_report_head},
     {"virtual_rig", FLAG, "", "a recording that is used comes from a virtual rig"},
     {"settings", OBJECT, "", "settings of the calibration", &settings},
@@ -323,38 +299,35 @@ static const struct wb_schema_row recordings_rows[] = {
     {"recordings", OBJECT | LIST, "", "recordings of the campaign", &recording},
     {"wires", OBJECT | LIST, "", "wires of the campaign", &wire},
 };
-static const struct wb_schema_object recordings = {
-    "report_of_recordings", "The report of a campaign of recordings.", ROWS(recordings_rows)};
+static WB_KEYS(recordings, "report_of_recordings", "The report of a campaign of recordings.");
 
-static const struct wb_schema_object *const kinds[] = {&recordings,
-                                                       &wb_schema_report_comparison,
-                                                       &wb_schema_report_bundles,
-                                                       &wb_schema_report_prediction,
-                                                       &wb_schema_report_machine,
-                                                       NULL};
-const struct wb_schema_object wb_schema_report = {
+static const struct wb_keys *const kinds[] = {&recordings,
+                                              &wb_schema_report_comparison,
+                                              &wb_schema_report_bundles,
+                                              &wb_schema_report_prediction,
+                                              &wb_schema_report_machine,
+                                              NULL};
+const struct wb_keys wb_schema_report = {
     "report", "A report; its keys depend on the kind of the campaign.", .alternatives = kinds};
 
 /* --- manifest.json --- */
 
-static const struct wb_schema_row manifest_input_rows[] = {
+static const struct wb_key manifest_input_rows[] = {
     {"what", TEXT, "", "kind of input", .choices = "recording|file"},
     {"name", TEXT, "",
      "name: of a recording; of a file relative to the campaign's folder or to the shipped data, "
      "or its folder and name"},
     {"sha256", TEXT, "", "SHA-256; of a recording of the uncompressed one"},
 };
-static const struct wb_schema_object manifest_input = {
-    "manifest_input", "A recording or a file that was read.", ROWS(manifest_input_rows)};
+static WB_KEYS(manifest_input, "manifest_input", "A recording or a file that was read.");
 
-static const struct wb_schema_row manifest_file_rows[] = {
+static const struct wb_key manifest_file_rows[] = {
     {"name", TEXT, "", "name, relative to the report's folder"},
     {"sha256", TEXT, "", "SHA-256"},
 };
-static const struct wb_schema_object manifest_file = {"manifest_file", "A file of the report.",
-                                                      ROWS(manifest_file_rows)};
+static WB_KEYS(manifest_file, "manifest_file", "A file of the report.");
 
-static const struct wb_schema_row build_rows[] = {
+static const struct wb_key build_rows[] = {
     {"version", TEXT, "", "version of the program"},
     {"revision", TEXT, "", "revision of the sources"},
     {"compiler", TEXT, "", "compiler"},
@@ -363,10 +336,9 @@ static const struct wb_schema_row build_rows[] = {
     {"libraries", OBJECT | LIST, "", "libraries of the process", &wb_schema_sum},
     {"fonts", OBJECT | LIST, "", "fonts of the report", &wb_schema_sum},
 };
-static const struct wb_schema_object build = {"build", "The program that made the report.",
-                                              ROWS(build_rows)};
+static WB_KEYS(build, "build", "The program that made the report.");
 
-static const struct wb_schema_row manifest_rows[] = {
+static const struct wb_key wb_schema_manifest_rows[] = {
     {"report", TEXT, "", "number of the report; empty without a laboratory"},
     {"title", TEXT, "", "title of the report"},
     {"amends", TEXT | OPTIONAL, "", "number of the report that this one replaces"},
@@ -375,5 +347,4 @@ static const struct wb_schema_row manifest_rows[] = {
     {"files", OBJECT | LIST, "", "files of the report", &manifest_file},
     {"build", OBJECT, "", "program that made the report", &build},
 };
-const struct wb_schema_object wb_schema_manifest = {
-    "manifest", "The inputs and files of a signed report.", ROWS(manifest_rows)};
+WB_KEYS(wb_schema_manifest, "manifest", "The inputs and files of a signed report.");

@@ -4,24 +4,22 @@
 
 /* --- comparison --- */
 
-static const struct wb_schema_row peak_rows[] = {
+static const struct wb_key peak_rows[] = {
     {"von_mises_MPa", NUMBER, "MPa", "largest von Mises stress"},
     {"at_mm", NUMBER | LIST, "mm", "its place in the straight wire: x, y, z"},
 };
-static const struct wb_schema_object peak = {"stress_peak", "The largest stress of a part.",
-                                             ROWS(peak_rows)};
+static WB_KEYS(peak, "stress_peak", "The largest stress of a part.");
 
-static const struct wb_schema_row section_rows[] = {
+static const struct wb_key section_rows[] = {
     {"state", TEXT, "", "name of the model's step"},
     {"section", TEXT, "", "kind of section", .choices = "longitudinal|cross"},
     {"from_clamp_mm", NUMBER | UNKNOWN, "mm", "place of a cross section; null: longitudinal"},
     {"core", OBJECT | OPTIONAL, "", "largest stress of the core", &peak},
     {"jacket", OBJECT | OPTIONAL, "", "largest stress of the jacket", &peak},
 };
-static const struct wb_schema_object section = {"section", "A section with stress fields.",
-                                                ROWS(section_rows)};
+static WB_KEYS(section, "section", "A section with stress fields.");
 
-static const struct wb_schema_row run_rows[] = {
+static const struct wb_key run_rows[] = {
     {.of = &wb_schema_simulation_state},
     {"elements", NUMBER | UNKNOWN, "", "number of elements"},
     {"degrees_of_freedom", NUMBER | UNKNOWN, "", "number of unknowns"},
@@ -42,11 +40,10 @@ static const struct wb_schema_row run_rows[] = {
     {"tip_moved_at_most_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
      "with residual stress: largest distance of the tip from that of the model without"},
 };
-static const struct wb_schema_object run = {
-    "comparison_run", "A dataset of a case; the keys from `sha256` on are of a used one.",
-    ROWS(run_rows)};
+static WB_KEYS(run, "comparison_run",
+               "A dataset of a case; the keys from `sha256` on are of a used one.");
 
-static const struct wb_schema_row case_rows[] = {
+static const struct wb_key of_case_rows[] = {
     {"label", TEXT, "", "name of the case in the report"},
     {"model", TEXT, "", "name of the model"},
     {"inputs_sha256", TEXT, "", "SHA-256 of the solid's inputs"},
@@ -55,20 +52,18 @@ static const struct wb_schema_row case_rows[] = {
     {"cpu_of_rod_over_solid", NUMBER | UNKNOWN | OPTIONAL, "",
      "CPU time of the rod over that of the solid"},
 };
-static const struct wb_schema_object of_case = {"comparison_case", "A case of the comparison.",
-                                                ROWS(case_rows)};
+static WB_KEYS(of_case, "comparison_case", "A case of the comparison.");
 
-static const struct wb_schema_row stress_rows[] = {
+static const struct wb_key stress_rows[] = {
     {"from_clamp_mm", NUMBER, "mm", "place of the cross section"},
     {"core", OBJECT | OPTIONAL, "", "largest stress of the core", &peak},
     {"jacket", OBJECT | OPTIONAL, "", "largest stress of the jacket", &peak},
     {"curvature_per_mm", NUMBER | UNKNOWN, "1/mm", "curvature of the exact rod there"},
     {"E_kappa_r_MPa", NUMBER | UNKNOWN, "MPa", "stress E kappa r of beam theory"},
 };
-static const struct wb_schema_object stress = {
-    "elastic_stress", "Stresses of a cross section of the elastic solid.", ROWS(stress_rows)};
+static WB_KEYS(stress, "elastic_stress", "Stresses of a cross section of the elastic solid.");
 
-static const struct wb_schema_row rod_rows[] = {
+static const struct wb_key rod_rows[] = {
     {"reached", FLAG, "", "the rod reached the force"},
     {"tip_x_mm", NUMBER | UNKNOWN, "mm", "x of the tip"},
     {"tip_y_mm", NUMBER | UNKNOWN, "mm", "y of the tip"},
@@ -81,9 +76,9 @@ static const struct wb_schema_row rod_rows[] = {
     {"deflection_mm", NUMBER | LIST | UNKNOWN | OPTIONAL, "mm", "deflections of the curve"},
     {"angle_degrees", NUMBER | LIST | UNKNOWN | OPTIONAL, "degree", "slope angles of the curve"},
 };
-static const struct wb_schema_object rod = {"rod", "A rod under the same force.", ROWS(rod_rows)};
+static WB_KEYS(rod, "rod", "A rod under the same force.");
 
-static const struct wb_schema_row fit_rows[] = {
+static const struct wb_key fit_rows[] = {
     {"printed", OBJECT | OPTIONAL, "", "published properties", &wb_schema_ludwik},
     {"problem", TEXT | OPTIONAL, "", "why there is no fit"},
     {"properties", OBJECT | OPTIONAL, "", "fitted properties", &wb_schema_ludwik},
@@ -95,10 +90,9 @@ static const struct wb_schema_row fit_rows[] = {
     {"beam_runs", INTEGER | OPTIONAL, "", "computations of the beam"},
     {"rod", OBJECT | OPTIONAL, "", "rod with the fitted properties", &rod},
 };
-static const struct wb_schema_object fit = {
-    "comparison_fit", "The homogenised law fitted to the solid.", ROWS(fit_rows)};
+static WB_KEYS(fit, "comparison_fit", "The homogenised law fitted to the solid.");
 
-static const struct wb_schema_row comparison_rows[] = {
+static const struct wb_key wb_schema_report_comparison_rows[] = {
     {.of = &wb_schema_report_head},
     {"jacket_modulus_per_percent_of_core_MPa", NUMBER, "MPa",
      "change of the jacket's E by eq. 8 when the core's E changes by 1 %"},
@@ -110,35 +104,34 @@ static const struct wb_schema_row comparison_rows[] = {
     {"printed_collapse_force_N", NUMBER | UNKNOWN | OPTIONAL, "N",
      "force at which that rod would collapse without hardening"},
 };
-const struct wb_schema_object wb_schema_report_comparison = {
-    "report_of_comparison", "The report of a comparison campaign.", ROWS(comparison_rows)};
+WB_KEYS(wb_schema_report_comparison, "report_of_comparison",
+        "The report of a comparison campaign.");
 
 /* --- bundles --- */
 
-static const struct wb_schema_row verdict_rows[] = {
+static const struct wb_key verdict_rows[] = {
     {"limit", TEXT, "", "key of the limit"},  {"of", TEXT, "", "bundle or run"},
     {"value", NUMBER | UNKNOWN, "", "value"}, {"largest", NUMBER, "", "limit of the value"},
     {"kept", FLAG, "", "the limit is kept"},
 };
-static const struct wb_schema_object verdict = {"verdict", "A limit and whether it is kept.",
-                                                ROWS(verdict_rows)};
+static WB_KEYS(verdict, "verdict", "A limit and whether it is kept.");
 
-static const struct wb_schema_row beam_rows[] = {
+static const struct wb_key beam_rows[] = {
     {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
     {.of = &wb_schema_ludwik},
     {"EI_N_mm2", NUMBER, "N mm2", "flexural rigidity"},
 };
-static const struct wb_schema_object beam = {"beam", "A homogenised beam.", ROWS(beam_rows)};
+static WB_KEYS(beam, "beam", "A homogenised beam.");
 
-static const struct wb_schema_row result_rows[] = {
+static const struct wb_key result_rows[] = {
     {.of = &wb_schema_simulation_state},
     {"sha256", TEXT | OPTIONAL, "", "SHA-256 of force_deflection.csv"},
     {"tool_revision", TEXT | OPTIONAL, "", "revision of the program that computed it"},
     {"cpu_s", NUMBER | UNKNOWN | OPTIONAL, "s", "CPU time"},
 };
-static const struct wb_schema_object result = {"bundle_dataset", "A dataset.", ROWS(result_rows)};
+static WB_KEYS(result, "bundle_dataset", "A dataset.");
 
-static const struct wb_schema_row bundle_rows[] = {
+static const struct wb_key bundle_rows[] = {
     {"label", TEXT, "", "name in the report"},
     {"group", TEXT, "", "group of the bundle"},
     {"decaying_friction", TEXT, "", "name of the run with decaying friction"},
@@ -159,17 +152,16 @@ static const struct wb_schema_row bundle_rows[] = {
     {"cpu_of_rod_over_bundle", NUMBER | UNKNOWN | OPTIONAL, "",
      "CPU time of the beam over that of the bundle"},
 };
-static const struct wb_schema_object bundle = {"report_bundle", "A bundle.", ROWS(bundle_rows)};
+static WB_KEYS(bundle, "report_bundle", "A bundle.");
 
-static const struct wb_schema_row elastic_rows[] = {
+static const struct wb_key elastic_rows[] = {
     {"length_mm", NUMBER, "mm", "length"},
     {"EI_N_mm2", NUMBER | UNKNOWN, "N mm2", "flexural rigidity at that length"},
     {"newmark_alpha_L", NUMBER | UNKNOWN, "", "alpha L of Newmark's theory"},
 };
-static const struct wb_schema_object elastic = {
-    "section_rigidity", "The elastic rigidity at one length.", ROWS(elastic_rows)};
+static WB_KEYS(elastic, "section_rigidity", "The elastic rigidity at one length.");
 
-static const struct wb_schema_row section_model_rows[] = {
+static const struct wb_key section_model_rows[] = {
     {"problem", TEXT | OPTIONAL, "", "why the section model was not computed"},
     {"friction_used", NUMBER | OPTIONAL, "", "friction coefficient"},
     {"friction_is_mean_of_decay", FLAG | OPTIONAL, "",
@@ -181,13 +173,12 @@ static const struct wb_schema_row section_model_rows[] = {
     {"elastic", OBJECT | LIST | OPTIONAL, "", "elastic rigidity", &elastic},
     {"force_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N", "force at the run's deflections"},
 };
-static const struct wb_schema_object section_model = {
-    "section_model", "The section model of the same bundle.", ROWS(section_model_rows)};
+static WB_KEYS(section_model, "section_model", "The section model of the same bundle.");
 
 static const struct wb_setting_table friction_setting = {wb_bundle_model_friction_setting, 1};
 static const struct wb_setting_table cohesion_setting = {wb_bundle_model_cohesion_setting, 1};
 
-static const struct wb_schema_row bundle_run_rows[] = {
+static const struct wb_key bundle_run_rows[] = {
     {"name", TEXT, "", "name of the run"},
     {"bundle", TEXT, "", "name of the bundle's file"},
     {"inputs_sha256", TEXT, "", "SHA-256 of the inputs"},
@@ -225,22 +216,20 @@ static const struct wb_schema_row bundle_run_rows[] = {
     {"rms", NUMBER | UNKNOWN | OPTIONAL, "", "RMS of `error`"},
     {"largest_error", NUMBER | UNKNOWN | OPTIONAL, "", "largest of `error`"},
 };
-static const struct wb_schema_object bundle_run = {
-    "report_run", "A run; the keys from `elements` on are of a used dataset.",
-    ROWS(bundle_run_rows)};
+static WB_KEYS(bundle_run, "report_run",
+               "A run; the keys from `elements` on are of a used dataset.");
 
-static const struct wb_schema_row bundles_rows[] = {
+static const struct wb_key wb_schema_report_bundles_rows[] = {
     {.of = &wb_schema_report_head},
     {"limits", OBJECT | LIST, "", "limits of the campaign", &verdict},
     {"bundles", OBJECT | LIST, "", "bundles", &bundle},
     {"runs", OBJECT | LIST, "", "runs", &bundle_run},
 };
-const struct wb_schema_object wb_schema_report_bundles = {
-    "report_of_bundles", "The report of a campaign of bundles.", ROWS(bundles_rows)};
+WB_KEYS(wb_schema_report_bundles, "report_of_bundles", "The report of a campaign of bundles.");
 
 /* --- prediction --- */
 
-static const struct wb_schema_row place_rows[] = {
+static const struct wb_key place_rows[] = {
     {"of", TEXT, "", "the number", .choices = "force_N|deflection_springback"},
     {"deflection_mm", NUMBER | OPTIONAL, "mm", "of a force: deflection"},
     {"test", NUMBER | UNKNOWN, "", "value of the test, in N or as a ratio"},
@@ -249,10 +238,9 @@ static const struct wb_schema_row place_rows[] = {
     {"high", NUMBER | UNKNOWN, "", "upper end of the band"},
     {"it_lies", TEXT, "", "place of the test's value", .choices = "below|within|above|not reached"},
 };
-static const struct wb_schema_object place = {"predicted_number",
-                                              "A number of a test and its band.", ROWS(place_rows)};
+static WB_KEYS(place, "predicted_number", "A number of a test and its band.");
 
-static const struct wb_schema_row test_rows[] = {
+static const struct wb_key test_rows[] = {
     {"label", TEXT, "", "name in the report"},
     {"dataset", TEXT, "", "folder of the dataset, as given"},
     {"problem", TEXT | OPTIONAL, "", "why the test is not compared"},
@@ -263,10 +251,9 @@ static const struct wb_schema_row test_rows[] = {
     {"verdict", TEXT | OPTIONAL, "", "verdict on all numbers"},
     {"places", OBJECT | LIST | OPTIONAL, "", "the numbers", &place},
 };
-static const struct wb_schema_object test = {"predicted_test", "A test beside the bands.",
-                                             ROWS(test_rows)};
+static WB_KEYS(test, "predicted_test", "A test beside the bands.");
 
-static const struct wb_schema_row predicted_rows[] = {
+static const struct wb_key predicted_rows[] = {
     {"label", TEXT, "", "name in the report"},
     {"bundle", TEXT, "", "name of the bundle's file"},
     {"inputs_sha256", TEXT, "", "SHA-256 of the inputs of the section model"},
@@ -274,19 +261,18 @@ static const struct wb_schema_row predicted_rows[] = {
     {"problem", TEXT | OPTIONAL, "", "why there are no bands"},
     {"tests", OBJECT | LIST, "", "tests", &test},
 };
-static const struct wb_schema_object predicted = {"predicted_bundle", "A bundle.",
-                                                  ROWS(predicted_rows)};
+static WB_KEYS(predicted, "predicted_bundle", "A bundle.");
 
-static const struct wb_schema_row prediction_rows[] = {
+static const struct wb_key wb_schema_report_prediction_rows[] = {
     {.of = &wb_schema_report_head},
     {"bundles", OBJECT | LIST, "", "bundles", &predicted},
 };
-const struct wb_schema_object wb_schema_report_prediction = {
-    "report_of_prediction", "The report of a campaign of predictions.", ROWS(prediction_rows)};
+WB_KEYS(wb_schema_report_prediction, "report_of_prediction",
+        "The report of a campaign of predictions.");
 
 /* --- machine --- */
 
-static const struct wb_schema_row machine_test_rows[] = {
+static const struct wb_key machine_test_rows[] = {
     {"file", TEXT, "", "file of the test"},
     {"state", TEXT, "", "whether the test is used", .choices = "used|missing|refused"},
     {"sha256", TEXT | OPTIONAL, "", "SHA-256 of the file"},
@@ -299,10 +285,9 @@ static const struct wb_schema_row machine_test_rows[] = {
     {"early_rigidity_Nmm2", NUMBER | UNKNOWN | OPTIONAL, "N mm2",
      "F L^3 / 48 d at d = 0.02 of the span from the first contact"},
 };
-static const struct wb_schema_object machine_test = {"machine_test", "A test of a group.",
-                                                     ROWS(machine_test_rows)};
+static WB_KEYS(machine_test, "machine_test", "A test of a group.");
 
-static const struct wb_schema_row group_rows[] = {
+static const struct wb_key group_rows[] = {
     {"name", TEXT, "", "name of the group"},
     {"label", TEXT, "", "name in the report"},
     {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
@@ -316,18 +301,16 @@ static const struct wb_schema_row group_rows[] = {
     {"force_deviation_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N", "its standard deviation"},
     {"tests", OBJECT | LIST, "", "tests", &machine_test},
 };
-static const struct wb_schema_object group = {"machine_group", "A group of tests.",
-                                              ROWS(group_rows)};
+static WB_KEYS(group, "machine_group", "A group of tests.");
 
-static const struct wb_schema_row interval_rows[] = {
+static const struct wb_key interval_rows[] = {
     {"value", NUMBER | UNKNOWN, "", "value"},
     {"low_95", NUMBER | UNKNOWN, "", "lower end of its 95 % confidence interval"},
     {"high_95", NUMBER | UNKNOWN, "", "upper end of that interval"},
 };
-static const struct wb_schema_object interval = {"interval", "A value and its interval.",
-                                                 ROWS(interval_rows)};
+static WB_KEYS(interval, "interval", "A value and its interval.");
 
-static const struct wb_schema_row layer_place_rows[] = {
+static const struct wb_key layer_place_rows[] = {
     {"curvature_1_m", NUMBER | UNKNOWN, "1/m", "curvature"},
     {"seating", FLAG, "", "the deflection is so small that the seating of the wire decides"},
     {"measured_Nmm", NUMBER | UNKNOWN, "N mm", "measured moment"},
@@ -340,44 +323,40 @@ static const struct wb_schema_row layer_place_rows[] = {
     {"chi_of_half_and_twice_the_zero", NUMBER | LIST | UNKNOWN, "",
      "chi with half and twice the force that marks the first contact"},
 };
-static const struct wb_schema_object layer_place = {"layer_place", "A layer at one curvature.",
-                                                    ROWS(layer_place_rows)};
+static WB_KEYS(layer_place, "layer_place", "A layer at one curvature.");
 
-static const struct wb_schema_row layer_rows[] = {
+static const struct wb_key layer_rows[] = {
     {"group", TEXT, "", "group of the layer"},
     {"tests", INTEGER, "", "number of tests"},
     {"places", OBJECT | LIST, "", "curvatures", &layer_place},
 };
-static const struct wb_schema_object layer = {"cable_layer", "A layer of the cable.",
-                                              ROWS(layer_rows)};
+static WB_KEYS(layer, "cable_layer", "A layer of the cable.");
 
-static const struct wb_schema_row cable_rows[] = {
+static const struct wb_key cable_rows[] = {
     {"wire_count", INTEGER, "", "wires round the core"},
     {"wire_circle_radius_mm", NUMBER, "mm", "radius of the circle of their centres"},
     {"conductor_area_mm2", NUMBER, "mm2", "area of the metal in one wire"},
     {"conductor", OBJECT, "", "law of the conductor", &wb_schema_ludwik},
     {"layers", OBJECT | LIST, "", "layers", &layer},
 };
-static const struct wb_schema_object cable = {"cable", "A layered cable.", ROWS(cable_rows)};
+static WB_KEYS(cable, "cable", "A layered cable.");
 
-static const struct wb_schema_row estimate_rows[] = {
+static const struct wb_key estimate_rows[] = {
     {"value", NUMBER | UNKNOWN, "", "value, in the unit of the key above"},
     {"low_95", NUMBER | UNKNOWN, "", "lower end of its 95 % confidence interval"},
     {"high_95", NUMBER | UNKNOWN, "", "upper end of that interval"},
     {"low_of_bench", NUMBER | UNKNOWN, "", "least value over friction and nose radius"},
     {"high_of_bench", NUMBER | UNKNOWN, "", "largest value over friction and nose radius"},
 };
-static const struct wb_schema_object estimate = {"bench_estimate", "A value and its intervals.",
-                                                 ROWS(estimate_rows)};
+static WB_KEYS(estimate, "bench_estimate", "A value and its intervals.");
 
-static const struct wb_schema_row moment_rows[] = {
+static const struct wb_key moment_rows[] = {
     {"curvature_1_m", NUMBER | UNKNOWN, "1/m", "curvature"},
     {"moment_Nmm", OBJECT, "N mm", "moment of a first loading", &estimate},
 };
-static const struct wb_schema_object moment = {"fit_moment", "The moment at one curvature.",
-                                               ROWS(moment_rows)};
+static WB_KEYS(moment, "fit_moment", "The moment at one curvature.");
 
-static const struct wb_schema_row fit_test_rows[] = {
+static const struct wb_key fit_test_rows[] = {
     {"series", TEXT, "", "series that the test belongs to"},
     {"sample", INTEGER, "", "number of the piece"},
     {"problem", TEXT | OPTIONAL, "", "why no law was fitted"},
@@ -389,10 +368,9 @@ static const struct wb_schema_row fit_test_rows[] = {
     {"usable_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "travel up to which the test is used"},
     {"limit", TEXT | OPTIONAL, "", "reason of that limit"},
 };
-static const struct wb_schema_object fit_test = {"fit_test", "The fit of a test.",
-                                                 ROWS(fit_test_rows)};
+static WB_KEYS(fit_test, "fit_test", "The fit of a test.");
 
-static const struct wb_schema_row left_out_rows[] = {
+static const struct wb_key left_out_rows[] = {
     {"scatter_N", NUMBER | UNKNOWN, "N", "standard deviation of the tests, RMS over deflections"},
     {"scatter_alone_N", NUMBER | UNKNOWN, "N",
      "RMS error expected from specimen scatter alone: sqrt(n / (n - 1)) times that"},
@@ -402,10 +380,9 @@ static const struct wb_schema_row left_out_rows[] = {
     {"deflection_mm", NUMBER | LIST | UNKNOWN, "mm", "deflections that all tests reach"},
     {"bias_at_N", NUMBER | LIST | UNKNOWN, "N", "model less the mean of the other tests"},
 };
-static const struct wb_schema_object left_out = {
-    "left_out", "A validation by leaving each test out.", ROWS(left_out_rows)};
+static WB_KEYS(left_out, "left_out", "A validation by leaving each test out.");
 
-static const struct wb_schema_row fitted_wire_rows[] = {
+static const struct wb_key fitted_wire_rows[] = {
     {"wire", TEXT, "", "name of the wire"},
     {"test_count", INTEGER, "", "number of tests"},
     {"problem", TEXT | OPTIONAL, "", "why there is no fit or no validation"},
@@ -420,11 +397,10 @@ static const struct wb_schema_row fitted_wire_rows[] = {
     {"tests", OBJECT | LIST | OPTIONAL, "", "fits of the tests", &fit_test},
     {"left_out", OBJECT | OPTIONAL, "", "validation by leaving each test out", &left_out},
 };
-static const struct wb_schema_object fitted_wire = {
-    "fitted_wire", "The calibration of a wire on three-point bending tests.",
-    ROWS(fitted_wire_rows)};
+static WB_KEYS(fitted_wire, "fitted_wire",
+               "The calibration of a wire on three-point bending tests.");
 
-static const struct wb_schema_row machine_rows[] = {
+static const struct wb_key wb_schema_report_machine_rows[] = {
     {.of = &wb_schema_report_head},
     {"tests_wanted", INTEGER, "", "tests of the campaign"},
     {"tests_used", INTEGER, "", "tests that are used"},
@@ -433,5 +409,5 @@ static const struct wb_schema_row machine_rows[] = {
     {"cable", OBJECT | OPTIONAL, "", "layered cable", &cable},
     {"wires", OBJECT | LIST | OPTIONAL, "", "calibrated wires", &fitted_wire},
 };
-const struct wb_schema_object wb_schema_report_machine = {
-    "report_of_machine", "The report of a campaign of testing machines.", ROWS(machine_rows)};
+WB_KEYS(wb_schema_report_machine, "report_of_machine",
+        "The report of a campaign of testing machines.");

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "analysis/calibration/properties/quantity.h"
-#include "analysis/schema/row.h"
+#include "analysis/schema/tables.h"
 
 const struct wb_schema_document wb_schema_documents[WB_SCHEMA_DOCUMENTS] = {
     {"dataset", "dataset.json of wirebench", &wb_schema_dataset},
@@ -27,7 +27,7 @@ struct target {
     struct wb_json *definitions, *properties, *required;
 };
 
-static void add_rows(const struct target *target, const struct wb_schema_object *object);
+static void add_rows(const struct target *target, const struct wb_keys *object);
 
 /* --- definitions --- */
 
@@ -41,7 +41,7 @@ static struct wb_json *begin(struct target *target, struct wb_json *schema)
 }
 
 /* Each object is defined once, where it is first referred to. */
-static void define(struct wb_json *definitions, const struct wb_schema_object *object)
+static void define(struct wb_json *definitions, const struct wb_keys *object)
 {
     if (wb_json_get(definitions, object->name))
         return;
@@ -92,7 +92,7 @@ static void set_choices(struct wb_json *schema, const char *choices)
 
 /* An object, or an object among other types. */
 static void set_reference(struct wb_json *definitions, struct wb_json *schema, unsigned type,
-                          const struct wb_schema_object *of)
+                          const struct wb_keys *of)
 {
     char reference[80];
     snprintf(reference, sizeof reference, "#/$defs/%s", of->name);
@@ -117,8 +117,7 @@ static void set_band(struct wb_json *schema)
     wb_json_set_integer(list, "maxItems", 2);
 }
 
-static void set_value(struct wb_json *definitions, struct wb_json *schema,
-                      const struct wb_schema_row *row)
+static void set_value(struct wb_json *definitions, struct wb_json *schema, const struct wb_key *row)
 {
     if (row->of)
         set_reference(definitions, schema, row->type, row->of);
@@ -130,7 +129,7 @@ static void set_value(struct wb_json *definitions, struct wb_json *schema,
         set_types(schema, row->type);
 }
 
-static void add_row(const struct target *target, const struct wb_schema_row *row)
+static void add_row(const struct target *target, const struct wb_key *row)
 {
     struct wb_json *const schema = wb_json_set_object(target->properties, row->key);
     if (row->type & LIST) {
@@ -174,10 +173,10 @@ static void add_setting(const struct target *target, const struct wb_setting *se
     if (!is_list) {
         const struct wb_setting *const value =
             setting->type == WB_SETTING_LIST ? &setting->members->rows[0] : setting;
-        const struct wb_schema_row row = {.key = value->name,
-                                          .type = type_of(value) | optional,
-                                          .unit = value->unit ? value->unit : "",
-                                          .meaning = setting->help ? setting->help : ""};
+        const struct wb_key row = {.key = value->name,
+                                   .type = type_of(value) | optional,
+                                   .unit = value->unit ? value->unit : "",
+                                   .meaning = setting->help ? setting->help : ""};
         add_row(target, &row);
         return;
     }
@@ -191,7 +190,7 @@ static void add_setting(const struct target *target, const struct wb_setting *se
         wb_json_append_text(target->required, setting->name);
 }
 
-static void add_settings(const struct target *target, const struct wb_schema_row *row)
+static void add_settings(const struct target *target, const struct wb_key *row)
 {
     for (size_t i = 0; i < row->settings->n; i++) {
         const struct wb_setting *const setting = &row->settings->rows[i];
@@ -207,7 +206,7 @@ static void add_estimate(const struct target *target, const struct wb_quantity *
                          unsigned type)
 {
     const unsigned number = type & ESTIMATES ? NUMBER | UNKNOWN : NUMBER | OPTIONAL;
-    const struct wb_schema_row rows[] = {
+    const struct wb_key rows[] = {
         {quantity->value_key, number, quantity->unit, "mean over the specimens"},
         {"low", number, quantity->unit, "lower end of the 95 % confidence interval of the mean"},
         {"high", number, quantity->unit, "upper end of that interval"},
@@ -218,8 +217,8 @@ static void add_estimate(const struct target *target, const struct wb_quantity *
         {"scatter", NUMBER | OPTIONAL, "", "standard deviation of the logarithm between specimens"},
     };
     if (quantity->most > 0) {
-        const struct wb_schema_row curvature = {"curvature_1_m", NUMBER, "1/m",
-                                                "curvature at which the quantity is stated"};
+        const struct wb_key curvature = {"curvature_1_m", NUMBER, "1/m",
+                                         "curvature at which the quantity is stated"};
         add_row(target, &curvature);
     }
     for (size_t i = 0; i < WB_COUNT(rows) - (type & ESTIMATES ? 1 : 0); i++)
@@ -242,7 +241,7 @@ static void add_quantity(const struct target *target, const struct wb_quantity *
     } else if (quantity->resolved == 0) {
         begin_list(&inner, schema);
     } else {
-        const struct wb_schema_row resolved = {
+        const struct wb_key resolved = {
             "resolved_from_1_m", type & ESTIMATES ? NUMBER | UNKNOWN : NUMBER, "1/m",
             "smallest curvature that the data of all specimens resolve; below it the value follows "
             "from the law alone"};
@@ -258,10 +257,10 @@ static void add_quantity(const struct target *target, const struct wb_quantity *
     add_estimate(&inner, quantity, type);
 }
 
-static void add_rows(const struct target *target, const struct wb_schema_object *object)
+static void add_rows(const struct target *target, const struct wb_keys *object)
 {
     for (size_t i = 0; i < object->n; i++) {
-        const struct wb_schema_row *const row = &object->rows[i];
+        const struct wb_key *const row = &object->rows[i];
         if (row->key)
             add_row(target, row);
         else if (row->settings)

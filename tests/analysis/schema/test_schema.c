@@ -3,7 +3,8 @@
 
 #include "analysis/calibration/properties/properties.h"
 #include "analysis/calibration/properties/quantity.h"
-#include "analysis/schema/row.h"
+#include "analysis/schema/schema.h"
+#include "analysis/schema/tables.h"
 #include "tests/messages.h"
 
 /* --- rows --- */
@@ -15,11 +16,11 @@ enum {
 
 /* Each object below a root, once. */
 struct objects {
-    const struct wb_schema_object *all[MOST_OBJECTS];
+    const struct wb_keys *all[MOST_OBJECTS];
     int n;
 };
 
-static void collect(struct objects *objects, const struct wb_schema_object *object)
+static void collect(struct objects *objects, const struct wb_keys *object)
 {
     for (int i = 0; i < objects->n; i++) {
         if (objects->all[i] == object)
@@ -55,10 +56,10 @@ static void add_key(struct keys *keys, const char *key)
     keys->all[keys->n++] = key;
 }
 
-static void list_keys(struct keys *keys, const struct wb_schema_object *object)
+static void list_keys(struct keys *keys, const struct wb_keys *object)
 {
     for (size_t i = 0; i < object->n; i++) {
-        const struct wb_schema_row *const row = &object->rows[i];
+        const struct wb_key *const row = &object->rows[i];
         if (row->key)
             add_key(keys, row->key);
         else if (row->settings)
@@ -87,9 +88,9 @@ static void every_row_has_a_meaning(void **state)
     const struct objects objects = collect_all();
     assert_true(objects.n > 150);
     for (int i = 0; i < objects.n; i++) {
-        const struct wb_schema_object *const object = objects.all[i];
+        const struct wb_keys *const object = objects.all[i];
         for (size_t k = 0; k < object->n; k++) {
-            const struct wb_schema_row *const row = &object->rows[k];
+            const struct wb_key *const row = &object->rows[k];
             if (!row->key)
                 continue;
             const size_t length = strlen(row->meaning);
@@ -166,7 +167,7 @@ static void the_unit_in_a_key_is_that_of_its_row(void **state)
     const struct objects objects = collect_all();
     for (int i = 0; i < objects.n; i++) {
         for (size_t k = 0; k < objects.all[i]->n; k++) {
-            const struct wb_schema_row *const row = &objects.all[i]->rows[k];
+            const struct wb_key *const row = &objects.all[i]->rows[k];
             if (!row->key || is_exception(row->key) || unit_of(row->key)[0] == '\0')
                 continue;
             if (strcmp(unit_of(row->key), row->unit) != 0)
@@ -205,12 +206,12 @@ static void documents_are_found_by_name(void **state)
     "hardening_exponent: 0.9"
 
 /* The definition of a key's object, by its path from the root: "law.parts". */
-static const struct wb_schema_object *object_at(const char *path)
+static const struct wb_keys *object_at(const char *path)
 {
-    const struct wb_schema_object *object = &wb_schema_properties;
+    const struct wb_keys *object = &wb_schema_properties;
     while (*path) {
         const size_t n = strcspn(path, ".");
-        const struct wb_schema_object *next = NULL;
+        const struct wb_keys *next = NULL;
         for (size_t i = 0; i < object->n && !next; i++) {
             const char *const key = object->rows[i].key;
             if (key && strlen(key) == n && strncmp(key, path, n) == 0)
