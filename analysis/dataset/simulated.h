@@ -7,6 +7,7 @@
 #define WB_ANALYSIS_DATASET_SIMULATED_H
 
 #include "analysis/dataset/dataset.h"
+#include "analysis/keys/keys.h"
 #include "base/text.h"
 #include "fe/material/law.h"
 #include "fe/model/wire_model.h"
@@ -81,6 +82,9 @@ void wb_simulated_cantilever_inputs(struct wb_json *object,
                                     const struct wb_simulated_cantilever *cantilever);
 void wb_simulated_wire_inputs(struct wb_json *object, const struct wb_wire_model *model,
                               bool is_solid);
+
+/* Keys of `simulation` of a wire, and of the mesh of its solid. */
+extern const struct wb_keys wb_simulated_wire_keys, wb_simulated_wire_mesh;
 
 /* How a wire model was computed. */
 struct wb_simulated_wire {

@@ -4,18 +4,13 @@
 #include <string.h>
 
 #include "analysis/dataset/simulated.h"
+#include "analysis/keys/row.h"
 #include "base/file.h"
 #include "base/units.h"
 #include "fe/model/model_inputs.h"
 #include "fe/trial/wire1d.h"
 
 static const double megabyte = 1e6; /* bytes */
-
-static const char *const kind_names[] = {
-    [WB_WIRE_STEP_LOADS] = "loads",
-    [WB_WIRE_STEP_DEFLECTION] = "deflection",
-    [WB_WIRE_STEP_RELEASE] = "release",
-};
 
 static void add_rows(struct wb_dataset *dataset, const struct wb_wire_run *run)
 {
@@ -51,10 +46,114 @@ static void set_info(struct wb_test_info *info, const struct wb_wire_model *mode
 
 /* --- dataset.json --- */
 
-static void describe_material(struct wb_json *object, const struct wb_material *material)
+#define MODEL(member) WB_AT(struct wb_wire_model, member)
+#define PART(member) WB_AT(struct wb_wire_model_part, member)
+#define BALANCE(member) WB_AT(struct wb_wire3d_balance, member)
+#define RUN(member) WB_AT(struct wb_wire_run, member)
+
+static const struct wb_key wire_part_rows[] = {
+    {"name", PART(name), "", "name of the part"},
+    {"outer_diameter_mm", PART(outer_diameter), "mm", "outer diameter"},
+    {"material", PART(material_name), "", "name of the material"},
+    {"source", PART(source), "", "source of the values"},
+    {"substitute", PART(is_substitute), "", "the values replace lost ones"},
+    {"youngs_modulus_MPa", PART(material.youngs_modulus), "MPa", "Young's modulus"},
+    {"poissons_ratio", PART(material.poissons_ratio), "", "Poisson's ratio"},
+    {"hardening", TEXT | OPTIONAL, "", "hardening; absent: elastic",
+     .choices = "isotropic|kinematic"},
+    {"yield_stress_MPa", NUMBER | OPTIONAL, "MPa", "yield stress"},
+    {"strength_coefficient_MPa", NUMBER | OPTIONAL, "MPa", "strength coefficient"},
+    {"hardening_exponent", NUMBER | OPTIONAL, "", "hardening exponent, of isotropic hardening"},
+    {"density_g_cm3", PART(density), "g/cm3", "density"},
+};
+static WB_KEYS(wire_part, "wire_part", "A part of a wire model.");
+
+static const struct wb_key homogenised_rows[] = {
+    {"youngs_modulus_MPa", NUMBER, "MPa", "Young's modulus by the flexural rule of mixtures"},
+    {"poissons_ratio", NUMBER, "", "Poisson's ratio by areas"},
+};
+static WB_KEYS(homogenised, "homogenised", "The homogenised section.");
+
+static const struct wb_key interface_rows[] = {
+    {"kind", WB_CHOICE(struct wb_wire_model, has_contact), "", "interface between core and jacket",
+     .choices = "bonded|contact"},
+    {"friction", MODEL(jacket_contact.friction) | OPTIONAL, "", "friction coefficient"},
+    {"normal_stiffness_N_mm3", MODEL(jacket_contact.normal_stiffness) | OPTIONAL, "N/mm3",
+     "normal stiffness of the contact"},
+    {"penetration_mm", BALANCE(penetration) | OPTIONAL, "mm", "largest penetration at the end"},
+    {"opening_mm", BALANCE(opening) | OPTIONAL, "mm", "largest opening at the end"},
+    {"slip_mm", BALANCE(slip) | OPTIONAL, "mm", "largest accumulated slip at the end"},
+    {"sliding_mm", BALANCE(sliding) | OPTIONAL, "mm",
+     "largest sliding of points that lay on each other, in the whole computation"},
+    {"slip_limit_mm", BALANCE(slip_limit) | OPTIONAL, "mm",
+     "sliding beyond which the assumption of small sliding does not hold"},
+};
+static WB_KEYS(interface, "interface",
+               "The interface of core and jacket; numbers of contact only.");
+
+static const struct wb_key wb_simulated_wire_mesh_rows[] = {
+    {"elements_along", MODEL(elements_along), "", "elements along the wire"},
+    {"section_density", MODEL(section_density), "", "refinement of the section"},
+    {"integration", WB_CHOICE(struct wb_wire_model, integration), "", "integration of the elements",
+     .choices = "selective|reduced"},
+};
+WB_KEYS(wb_simulated_wire_mesh, "mesh_of_solid", "The mesh of a solid wire.");
+
+static const struct wb_key solid_energy_rows[] = {
+    {"work_J", BALANCE(work), "J", "work of the loads"},
+    {"elastic_J", BALANCE(elastic), "J", "stored elastic energy"},
+    {"dissipated_J", BALANCE(dissipated), "J", "energy dissipated by plasticity"},
+    {"friction_J", BALANCE(friction), "J", "energy dissipated by friction"},
+};
+static WB_KEYS(solid_energy, "energy_of_solid", "Energies at the end of the computation.");
+
+static const struct wb_key step_rows[] = {
+    {"name", WB_AT(struct wb_wire_step, name), "", "name of the step"},
+    {"kind", WB_CHOICE(struct wb_wire_step, kind), "", "what the step applies",
+     .choices = "loads|deflection|release"},
+    {"last_row", INTEGER, "", "last row of the step, from 1"},
+    {"t_s", NUMBER, "s", "time of that row"},
+    {"complete", FLAG, "", "the step was computed to its end"},
+};
+static WB_KEYS(step, "step", "A step of the model that was begun.");
+
+static const struct wb_key wb_simulated_wire_keys_rows[] = {
+    {"name", MODEL(name), "", "name of the model"},
+    {"title", MODEL(title), "", "title of the model"},
+    {"notes", MODEL(notes) | IF_KNOWN, "", "notes of the model"},
+    {"file", TEXT, "", "file of the model"},
+    {"sha256", TEXT | OPTIONAL, "", "of older datasets: SHA-256 of the model's files"},
+    {"law", TEXT, "", "whether the wire may yield", .choices = "elastic|elastoplastic"},
+    {"parts", OBJECT | LIST, "", "parts of the wire, from the inside out", &wire_part},
+    {"substitutes", FLAG, "", "values of a part replace lost ones"},
+    {"homogenised", OBJECT, "", "homogenised section", &homogenised},
+    {"clamp", WB_CHOICE(struct wb_wire_model, clamp), "", "boundary condition at the clamp",
+     .choices = "plane|fixed"},
+    {"gravity_m_s2", WB_FULL(struct wb_wire_model, gravity), "m/s2", "gravity: x, y, z"},
+    {"interface", OBJECT | OPTIONAL, "", "of wire3d: interface of core and jacket", &interface},
+    {"mesh", WB_HERE(struct wb_wire_model) | OPTIONAL, "", "of wire3d: mesh",
+     &wb_simulated_wire_mesh},
+    {"energy", WB_HERE(struct wb_wire3d_balance) | OPTIONAL, "", "of wire3d: energies at the end",
+     &solid_energy},
+    {"elements", RUN(n_elements), "", "number of elements"},
+    {"degrees_of_freedom", RUN(n_unknowns), "", "number of unknowns"},
+    {"increments", RUN(increments), "", "increments of the loading"},
+    {"iterations", RUN(iterations), "", "iterations of the equilibrium"},
+    {"cutbacks", RUN(cutbacks), "", "increments that were repeated with a smaller step"},
+    {"converged", RUN(converged), "", "the whole loading was computed"},
+    {"stopped", RUN(stopped), "", "stopped by Ctrl-C"},
+    {"problem", TEXT | OPTIONAL, "", "where and why the computation did not converge"},
+    {"zero_force_N", RUN(zero_force) | UNKNOWN, "N",
+     "vertical force that `force_N` is counted from"},
+    {"wall_s", WB_AT(struct wb_simulated_wire, wall), "s", "time of the computation"},
+    {"cpu_s", WB_AT(struct wb_simulated_wire, cpu), "s", "CPU time of the computation"},
+    {"peak_memory_MB", NUMBER | OPTIONAL, "MB", "largest memory of the process"},
+    {"steps", OBJECT | LIST, "", "steps of the model that were begun", &step},
+};
+WB_KEYS(wb_simulated_wire_keys, "wire_keys", "");
+
+static void describe_yield(struct wb_json *object, const struct wb_material *material)
 {
-    wb_json_set_number(object, "youngs_modulus_MPa", material->youngs_modulus / WB_MPA);
-    wb_json_set_number(object, "poissons_ratio", material->poissons_ratio);
     if (material->hardening == WB_HARDENING_NONE_ELASTIC)
         return;
     const bool kinematic = material->hardening == WB_HARDENING_KINEMATIC_LINEAR;
@@ -72,13 +171,9 @@ static void describe_parts(struct wb_json *simulation, const struct wb_wire_mode
     for (int i = 0; i < model->n_parts; i++) {
         const struct wb_wire_model_part *const part = &model->part[i];
         struct wb_json *const object = wb_json_append_object(parts);
-        wb_json_set_text(object, "name", part->name);
-        wb_json_set_number(object, "outer_diameter_mm", part->outer_diameter / WB_MM);
-        wb_json_set_text(object, "material", part->material_name);
-        wb_json_set_text(object, "source", part->source);
-        wb_json_set_boolean(object, "substitute", part->is_substitute);
-        describe_material(object, &part->material);
-        wb_json_set_number(object, "density_g_cm3", part->density / WB_G_PER_CM3);
+        WB_PUT(object, &wire_part, struct wb_wire_model_part, part);
+        describe_yield(object, &part->material);
+        WB_PUT(object, &wire_part, struct wb_wire_model_part, part);
         substitutes = substitutes || part->is_substitute;
     }
     wb_json_set_boolean(simulation, "substitutes", substitutes);
@@ -99,46 +194,27 @@ void wb_simulated_wire_inputs(struct wb_json *object, const struct wb_wire_model
 static void describe_model(struct wb_json *simulation, const struct wb_wire_model *model,
                            bool is_solid)
 {
-    wb_json_set_text(simulation, "name", model->name);
-    wb_json_set_text(simulation, "title", model->title);
-    if (model->notes[0] != '\0')
-        wb_json_set_text(simulation, "notes", model->notes);
+    WB_PUT(simulation, &wb_simulated_wire_keys, struct wb_wire_model, model);
     wb_json_set_text(simulation, "file", wb_file_name(model->path));
     wb_simulated_wire_inputs(wb_json_set_object(simulation, "inputs"), model, is_solid);
     wb_json_set_text(simulation, "law", model->is_elastic ? "elastic" : "elastoplastic");
     describe_parts(simulation, model);
-    wb_json_set_text(simulation, "clamp", model->clamp == WB_WIRE_CLAMP_FIXED ? "fixed" : "plane");
-    struct wb_json *const gravity = wb_json_set_array(simulation, "gravity_m_s2");
-    for (int i = 0; i < 3; i++)
-        wb_json_append_number(gravity, model->gravity[i]);
+    WB_PUT(simulation, &wb_simulated_wire_keys, struct wb_wire_model, model);
 }
 
 /* Members that only the solid has. */
 static void describe_solid(struct wb_json *simulation, const struct wb_wire_model *model,
                            const struct wb_wire3d_balance *balance)
 {
-    struct wb_json *const interface = wb_json_set_object(simulation, "interface");
-    wb_json_set_text(interface, "kind", model->has_contact ? "contact" : "bonded");
+    struct wb_json *const object = wb_json_set_object(simulation, "interface");
     if (model->has_contact) {
-        wb_json_set_number(interface, "friction", model->jacket_contact.friction);
-        wb_json_set_number(interface, "normal_stiffness_N_mm3",
-                           model->jacket_contact.normal_stiffness / WB_N_PER_MM3);
-        wb_json_set_number(interface, "penetration_mm", balance->penetration / WB_MM);
-        wb_json_set_number(interface, "opening_mm", balance->opening / WB_MM);
-        wb_json_set_number(interface, "slip_mm", balance->slip / WB_MM);
-        wb_json_set_number(interface, "sliding_mm", balance->sliding / WB_MM);
-        wb_json_set_number(interface, "slip_limit_mm", balance->slip_limit / WB_MM);
+        WB_PUT(object, &interface, struct wb_wire_model, model);
+        WB_PUT(object, &interface, struct wb_wire3d_balance, balance);
+    } else {
+        wb_json_set_text(object, "kind", "bonded");
     }
-    struct wb_json *const mesh = wb_json_set_object(simulation, "mesh");
-    wb_json_set_integer(mesh, "elements_along", model->elements_along);
-    wb_json_set_integer(mesh, "section_density", model->section_density);
-    wb_json_set_text(mesh, "integration",
-                     model->integration == WB_INTEGRATION_REDUCED ? "reduced" : "selective");
-    struct wb_json *const energy = wb_json_set_object(simulation, "energy");
-    wb_json_set_number(energy, "work_J", balance->work);
-    wb_json_set_number(energy, "elastic_J", balance->elastic);
-    wb_json_set_number(energy, "dissipated_J", balance->dissipated);
-    wb_json_set_number(energy, "friction_J", balance->friction);
+    WB_PUT(simulation, &wb_simulated_wire_keys, struct wb_wire_model, model);
+    WB_PUT(simulation, &wb_simulated_wire_keys, struct wb_wire3d_balance, balance);
 }
 
 /* The last row of each step that was begun. */
@@ -147,12 +223,11 @@ static void describe_steps(struct wb_json *simulation, const struct wb_dataset *
 {
     struct wb_json *const steps = wb_json_set_array(simulation, "steps");
     for (int i = 0; i < run->n_rows; i++) {
-        const int step = run->rows[i].step;
-        if (i + 1 < run->n_rows && run->rows[i + 1].step == step)
+        const int index = run->rows[i].step;
+        if (i + 1 < run->n_rows && run->rows[i + 1].step == index)
             continue;
         struct wb_json *const object = wb_json_append_object(steps);
-        wb_json_set_text(object, "name", model->step[step].name);
-        wb_json_set_text(object, "kind", kind_names[model->step[step].kind]);
+        WB_PUT(object, &step, struct wb_wire_step, &model->step[index]);
         wb_json_set_integer(object, "last_row", i + 1);
         wb_json_set_number(object, "t_s", dataset->rows[i].t);
         wb_json_set_boolean(object, "complete", run->rows[i].fraction >= 1.0);
@@ -162,18 +237,11 @@ static void describe_steps(struct wb_json *simulation, const struct wb_dataset *
 static void describe_run(struct wb_json *simulation, const struct wb_simulated_wire *wire)
 {
     const struct wb_wire_run *const run = wire->run;
-    wb_json_set_integer(simulation, "elements", run->n_elements);
-    wb_json_set_integer(simulation, "degrees_of_freedom", run->n_unknowns);
-    wb_json_set_integer(simulation, "increments", run->increments);
-    wb_json_set_integer(simulation, "iterations", run->iterations);
-    wb_json_set_integer(simulation, "cutbacks", run->cutbacks);
-    wb_json_set_boolean(simulation, "converged", run->converged);
-    wb_json_set_boolean(simulation, "stopped", run->stopped);
+    WB_PUT(simulation, &wb_simulated_wire_keys, struct wb_wire_run, run);
     if (!run->converged)
         wb_json_set_text(simulation, "problem", run->problem);
-    wb_json_set_number(simulation, "zero_force_N", run->zero_force);
-    wb_json_set_number(simulation, "wall_s", wire->wall);
-    wb_json_set_number(simulation, "cpu_s", wire->cpu);
+    WB_PUT(simulation, &wb_simulated_wire_keys, struct wb_wire_run, run);
+    WB_PUT(simulation, &wb_simulated_wire_keys, struct wb_simulated_wire, wire);
     if (wire->peak_memory > 0.0)
         wb_json_set_number(simulation, "peak_memory_MB", wire->peak_memory / megabyte);
 }

@@ -1,4 +1,5 @@
 /* Keys of `simulation` in dataset.json, by solver. */
+#include "analysis/dataset/simulated.h"
 #include "analysis/dataset/simulated_bundle.h"
 #include "analysis/dataset/simulated_section.h"
 #include "analysis/schema/tables.h"
@@ -63,13 +64,6 @@ static const struct wb_key input_contact_rows[] = {
 };
 static WB_KEYS(input_contact, "input_contact", "Contact between two parts of a wire.");
 
-static const struct wb_key solid_mesh_rows[] = {
-    {"elements_along", INTEGER, "", "elements along the wire"},
-    {"section_density", INTEGER, "", "refinement of the section"},
-    {"integration", TEXT, "", "integration of the elements", .choices = "selective|reduced"},
-};
-static WB_KEYS(solid_mesh, "mesh_of_solid", "The mesh of a solid wire.");
-
 static const struct wb_key history_rows[] = {
     {"name", TEXT, "", "name of the step"},
     {"kind", TEXT, "", "what the step applies", .choices = "loads|deflection|release"},
@@ -91,7 +85,7 @@ static const struct wb_key wire_inputs_rows[] = {
     {"clamp", TEXT, "", "boundary condition at the clamp", .choices = "plane|fixed"},
     {"gravity", NUMBER | LIST, "m/s2", "gravity: x, y, z"},
     {"strand_mm", NUMBER, "mm", "length of the strand; 0: a vertical force"},
-    {"mesh", OBJECT | OPTIONAL, "", "mesh, of a solid", &solid_mesh},
+    {"mesh", OBJECT | OPTIONAL, "", "mesh, of a solid", &wb_simulated_wire_mesh},
     {"fields_at_mm", NUMBER | LIST, "mm", "places of the cross sections whose fields are kept"},
     {"history", OBJECT | LIST, "", "steps of the loading", &history},
 };
@@ -200,11 +194,6 @@ static const struct wb_key ended_rows[] = {
 };
 static WB_KEYS(ended, "ended_keys", "");
 
-static const struct wb_key zero_force_rows[] = {
-    {"zero_force_N", NUMBER | UNKNOWN, "N", "vertical force that `force_N` is counted from"},
-};
-static WB_KEYS(zero_force, "zero_force_keys", "");
-
 static const struct wb_key computed_law_rows[] = {
     {"law", TEXT, "", "whether the wire may yield", .choices = "elastic|elastoplastic"},
     {"youngs_modulus_MPa", NUMBER, "MPa", "Young's modulus; of parallel parts the sum of moduli"},
@@ -235,101 +224,15 @@ static const struct wb_key bending_rows[] = {
 };
 static WB_KEYS(bending, "simulation_bending3p", "`solve bending3p`, with the numbers of the law.");
 
-/* --- wires --- */
-
-static const struct wb_key wire_part_rows[] = {
-    {"name", TEXT, "", "name of the part"},
-    {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
-    {"material", TEXT, "", "name of the material"},
-    {"source", TEXT, "", "source of the values"},
-    {"substitute", FLAG, "", "the values replace lost ones"},
-    {"youngs_modulus_MPa", NUMBER, "MPa", "Young's modulus"},
-    {"poissons_ratio", NUMBER, "", "Poisson's ratio"},
-    {"hardening", TEXT | OPTIONAL, "", "hardening; absent: elastic",
-     .choices = "isotropic|kinematic"},
-    {"yield_stress_MPa", NUMBER | OPTIONAL, "MPa", "yield stress"},
-    {"strength_coefficient_MPa", NUMBER | OPTIONAL, "MPa", "strength coefficient"},
-    {"hardening_exponent", NUMBER | OPTIONAL, "", "hardening exponent, of isotropic hardening"},
-    {"density_g_cm3", NUMBER, "g/cm3", "density"},
-};
-static WB_KEYS(wire_part, "wire_part", "A part of a wire model.");
-
-static const struct wb_key homogenised_rows[] = {
-    {"youngs_modulus_MPa", NUMBER, "MPa", "Young's modulus by the flexural rule of mixtures"},
-    {"poissons_ratio", NUMBER, "", "Poisson's ratio by areas"},
-};
-static WB_KEYS(homogenised, "homogenised", "The homogenised section.");
-
-static const struct wb_key interface_rows[] = {
-    {"kind", TEXT, "", "interface between core and jacket", .choices = "bonded|contact"},
-    {"friction", NUMBER | OPTIONAL, "", "friction coefficient"},
-    {"normal_stiffness_N_mm3", NUMBER | OPTIONAL, "N/mm3", "normal stiffness of the contact"},
-    {"penetration_mm", NUMBER | OPTIONAL, "mm", "largest penetration at the end"},
-    {"opening_mm", NUMBER | OPTIONAL, "mm", "largest opening at the end"},
-    {"slip_mm", NUMBER | OPTIONAL, "mm", "largest accumulated slip at the end"},
-    {"sliding_mm", NUMBER | OPTIONAL, "mm",
-     "largest sliding of points that lay on each other, in the whole computation"},
-    {"slip_limit_mm", NUMBER | OPTIONAL, "mm",
-     "sliding beyond which the assumption of small sliding does not hold"},
-};
-static WB_KEYS(interface, "interface",
-               "The interface of core and jacket; numbers of contact only.");
-
-static const struct wb_key solid_energy_rows[] = {
-    {"work_J", NUMBER, "J", "work of the loads"},
-    {"elastic_J", NUMBER, "J", "stored elastic energy"},
-    {"dissipated_J", NUMBER, "J", "energy dissipated by plasticity"},
-    {"friction_J", NUMBER, "J", "energy dissipated by friction"},
-};
-static WB_KEYS(solid_energy, "energy_of_solid", "Energies at the end of the computation.");
-
-static const struct wb_key step_rows[] = {
-    {"name", TEXT, "", "name of the step"},
-    {"kind", TEXT, "", "what the step applies", .choices = "loads|deflection|release"},
-    {"last_row", INTEGER, "", "last row of the step, from 1"},
-    {"t_s", NUMBER, "s", "time of that row"},
-    {"complete", FLAG, "", "the step was computed to its end"},
-};
-static WB_KEYS(step, "step", "A step of the model that was begun.");
-
-static const struct wb_key model_rows[] = {
-    {"name", TEXT, "", "name of the model"},
-    {"title", TEXT, "", "title of the model"},
-    {"notes", TEXT | OPTIONAL, "", "notes of the model"},
-    {"file", TEXT, "", "file of the model"},
-};
-static WB_KEYS(model, "model_keys", "");
+/* --- kinds --- */
 
 static const struct wb_key wire_rows[] = {
     {"model", TEXT, "", "the solver", .choices = "wire3d|wire1d"},
-    {.of = &model},
     {"inputs", OBJECT | OPTIONAL, "", "all that decides the numbers; absent in older datasets",
      &wire_inputs},
-    {"sha256", TEXT | OPTIONAL, "", "of older datasets: SHA-256 of the model's files"},
-    {"law", TEXT, "", "whether the wire may yield", .choices = "elastic|elastoplastic"},
-    {"parts", OBJECT | LIST, "", "parts of the wire, from the inside out", &wire_part},
-    {"substitutes", FLAG, "", "values of a part replace lost ones"},
-    {"homogenised", OBJECT, "", "homogenised section", &homogenised},
-    {"clamp", TEXT, "", "boundary condition at the clamp", .choices = "plane|fixed"},
-    {"gravity_m_s2", NUMBER | LIST, "m/s2", "gravity: x, y, z"},
-    {"interface", OBJECT | OPTIONAL, "", "of wire3d: interface of core and jacket", &interface},
-    {"mesh", OBJECT | OPTIONAL, "", "of wire3d: mesh", &solid_mesh},
-    {"energy", OBJECT | OPTIONAL, "", "of wire3d: energies at the end", &solid_energy},
-    {"elements", INTEGER, "", "number of elements"},
-    {"degrees_of_freedom", INTEGER, "", "number of unknowns"},
-    {"increments", INTEGER, "", "increments of the loading"},
-    {"iterations", INTEGER, "", "iterations of the equilibrium"},
-    {"cutbacks", INTEGER, "", "increments that were repeated with a smaller step"},
-    {"stopped", FLAG, "", "stopped by Ctrl-C"},
-    {"problem", TEXT | OPTIONAL, "", "where and why the computation did not converge"},
-    {.of = &zero_force},
-    {.of = &ended},
-    {"peak_memory_MB", NUMBER | OPTIONAL, "MB", "largest memory of the process"},
-    {"steps", OBJECT | LIST, "", "steps of the model that were begun", &step},
+    {.of = &wb_simulated_wire_keys},
 };
 static WB_KEYS(wire, "simulation_wire", "`solve wire3d` and `solve wire1d`.");
-
-/* --- bundles --- */
 
 static const struct wb_key bundle_rows[] = {
     {"model", TEXT, "", "the solver", .choices = "bundle"},
