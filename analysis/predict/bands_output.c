@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "analysis/dataset/csv_table.h"
+#include "analysis/keys/row.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/units.h"
@@ -194,37 +195,87 @@ enum wb_status wb_bands_output_write(const struct wb_bands *bands, const char *f
 
 /* --- JSON --- */
 
-static void set_band(struct wb_json *object, const char *key, const struct wb_bands_interval *band)
-{
-    struct wb_json *const member = wb_json_set_object(object, key);
-    wb_json_set_number(member, "median", band->median);
-    wb_json_set_number(member, "low", band->wide_low);
-    wb_json_set_number(member, "high", band->wide_high);
-    wb_json_set_number(member, "runs_low", band->low);
-    wb_json_set_number(member, "runs_high", band->high);
-}
+#define BAND_OF(member) WB_AT(struct wb_bands_interval, member)
+#define SHARE(member) WB_AT(struct wb_ranking_share, member)
+#define RANKING(member) WB_AT(struct wb_bands_ranking, member)
+#define CASE(member) WB_AT(struct wb_bands_case, member)
+
+static const struct wb_key interval_rows[] = {
+    {"median", BAND_OF(median) | UNKNOWN, "", "median of the runs"},
+    {"low", BAND_OF(wide_low) | UNKNOWN, "",
+     "lower end of the band of 90 %, with the model's error"},
+    {"high", BAND_OF(wide_high) | UNKNOWN, "", "upper end of that band"},
+    {"runs_low", BAND_OF(low) | UNKNOWN, "", "5 % quantile of the runs alone"},
+    {"runs_high", BAND_OF(high) | UNKNOWN, "", "95 % quantile of the runs alone"},
+};
+static WB_KEYS(interval, "band", "A band of a predicted number, in the unit of its key.");
+
+static const struct wb_key group_rows[] = {
+    {"group", TEXT, "", "group of inputs"},
+    {"share", SHARE(share), "", "share of the ranks' variance that this group explains"},
+    {"share_low", SHARE(low), "", "lower end of its interval of 90 %"},
+    {"share_high", SHARE(high), "", "upper end of its interval of 90 %"},
+};
+static WB_KEYS(group, "ranking_group", "The influence of a group of inputs.");
+
+static const struct wb_key ranking_rows[] = {
+    {"of", RANKING(of), "", "result that the ranking is of",
+     .choices = "force|deflection_springback"},
+    {"deflection_mm", RANKING(at) | UNKNOWN, "mm", "deflection at which the result is taken"},
+    {"R2", RANKING(ranking.r2) | UNKNOWN, "", "share of the variance that ranks explain"},
+    {"R2_low", RANKING(ranking.low) | UNKNOWN, "", "lower end of its interval"},
+    {"R2_high", RANKING(ranking.high) | UNKNOWN, "", "upper end of its interval"},
+    {"groups", OBJECT | LIST | OPTIONAL, "", "the groups of inputs; only from R2 = 0.9 on", &group},
+};
+static WB_KEYS(ranking, "ranking", "Which inputs the width of a band depends on.");
+
+static const struct wb_key of_case_rows[] = {
+    {"case", CASE(variant.name), "",
+     "`file`, or the name of a scenario or of a combination of the sweep"},
+    {"wires", CASE(n_wires), "", "number of wires"},
+    {"packing", CASE(packing), "", "packing of the wires"},
+    {"tape_layers", CASE(layers), "", "layers of tape, with overlap; 0: no tape"},
+    {"tape_outline", TEXT, "", "how the tape lies round the wires", .choices = "none|circle|hull"},
+    {"runs_not_converged", CASE(n_lost), "", "runs that were not computed to the end"},
+    {"draws_limited", CASE(n_limited), "", "runs with a drawn law that had to be limited"},
+    {"deflection_mm", WB_AT(struct wb_bands_place, at) | OPTIONAL, "mm",
+     "largest deflection that the band covers"},
+    {"force_N", WB_AT(struct wb_bands_place, band) | OPTIONAL, "N", "force at that deflection",
+     &interval},
+    {"deflection_springback", CASE(springback), "",
+     "springback of the deflection: 1 less the residual over the largest deflection", &interval},
+    {"residual_curvature_ratio", CASE(residual_curvature_ratio), "",
+     "largest curvature along the bundle at zero force over that at the largest deflection",
+     &interval},
+    {"ranking", OBJECT | LIST, "", "which inputs the bands depend on", &ranking},
+};
+static WB_KEYS(of_case, "prediction_case", "A case that was predicted.");
+
+static const struct wb_key wb_bands_output_keys_rows[] = {
+    {"confidence", NUMBER, "", "probability of the bands"},
+    {"model_error", NUMBER, "", "standard deviation of the model's error, of the largest value"},
+    {"runs", WB_AT(struct wb_bands, runs), "", "runs of each case"},
+    {"seed", WB_AT(struct wb_bands, seed), "", "seed of the draws"},
+    {"stopped", WB_AT(struct wb_bands, stopped), "", "interrupted: the last case is missing"},
+    {"laws_of_wires", TEXT | LIST, "", "source of the law of each kind of wire"},
+    {"cases", OBJECT | LIST, "", "the cases", &of_case},
+};
+WB_KEYS(wb_bands_output_keys, "uncertainty", "Bands of a bundle's prediction.");
 
 /* Below R2 = 0.9 no shares are written; R2 itself shows why. */
 static void append_ranking(struct wb_json *array, const struct wb_bands *bands,
                            const struct wb_bands_ranking *of)
 {
-    const struct wb_ranking *const ranking = &of->ranking;
     struct wb_json *const object = wb_json_append_object(array);
-    wb_json_set_text(object, "of", of->of);
-    wb_json_set_number(object, "deflection_mm", of->at / WB_MM);
-    wb_json_set_number(object, "R2", ranking->r2);
-    wb_json_set_number(object, "R2_low", ranking->low);
-    wb_json_set_number(object, "R2_high", ranking->high);
-    if (!ranking->is_valid)
+    WB_PUT(object, &ranking, struct wb_bands_ranking, of);
+    if (!of->ranking.is_valid)
         return;
     struct wb_json *const groups = wb_json_set_array(object, "groups");
-    for (int g = 0; g < ranking->n_groups; g++) {
-        const struct wb_ranking_share *const share = &ranking->group[g];
+    for (int g = 0; g < of->ranking.n_groups; g++) {
+        const struct wb_ranking_share *const share = &of->ranking.group[g];
         struct wb_json *const item = wb_json_append_object(groups);
         wb_json_set_text(item, "group", bands->inputs.group_name[share->group]);
-        wb_json_set_number(item, "share", share->share);
-        wb_json_set_number(item, "share_low", share->low);
-        wb_json_set_number(item, "share_high", share->high);
+        WB_PUT(item, &group, struct wb_ranking_share, share);
     }
 }
 
@@ -232,19 +283,12 @@ static void append_case(struct wb_json *array, const struct wb_bands *bands,
                         const struct wb_bands_case *c)
 {
     struct wb_json *const object = wb_json_append_object(array);
-    wb_json_set_text(object, "case", c->variant.name);
-    wb_json_set_integer(object, "wires", c->n_wires);
-    wb_json_set_text(object, "packing", c->packing);
-    wb_json_set_number(object, "tape_layers", c->layers);
+    WB_PUT(object, &of_case, struct wb_bands_case, c);
     wb_json_set_text(object, "tape_outline", outline(c));
-    wb_json_set_integer(object, "runs_not_converged", c->n_lost);
-    wb_json_set_integer(object, "draws_limited", c->n_limited);
-    if (last_force(c)) {
-        wb_json_set_number(object, "deflection_mm", last_force(c)->at / WB_MM);
-        set_band(object, "force_N", &last_force(c)->band);
-    }
-    set_band(object, "deflection_springback", &c->springback);
-    set_band(object, "residual_curvature_ratio", &c->residual_curvature_ratio);
+    WB_PUT(object, &of_case, struct wb_bands_case, c);
+    if (last_force(c))
+        WB_PUT(object, &of_case, struct wb_bands_place, last_force(c));
+    WB_PUT(object, &of_case, struct wb_bands_case, c);
     struct wb_json *const rankings = wb_json_set_array(object, "ranking");
     for (int i = 0; i < c->n_rankings; i++)
         append_ranking(rankings, bands, &c->ranking[i]);
@@ -255,9 +299,7 @@ void wb_bands_output_describe(const struct wb_bands *bands, struct wb_json *obje
     struct wb_json *const member = wb_json_set_object(object, "uncertainty");
     wb_json_set_number(member, "confidence", 0.9);
     wb_json_set_number(member, "model_error", wb_bands_model_error());
-    wb_json_set_integer(member, "runs", bands->runs);
-    wb_json_set_integer(member, "seed", (int64_t)bands->seed);
-    wb_json_set_boolean(member, "stopped", bands->stopped);
+    WB_PUT(member, &wb_bands_output_keys, struct wb_bands, bands);
     struct wb_json *const wires = wb_json_set_array(member, "laws_of_wires");
     for (int i = 0; i < bands->inputs.n_types; i++)
         wb_json_append_text(wires, bands->inputs.wires[i].source);
@@ -290,15 +332,15 @@ static void append_case_row(struct wb_text *text, const struct wb_bands_case *c,
 static void append_ranking_text(struct wb_text *text, const struct wb_bands *bands,
                                 const struct wb_bands_ranking *of)
 {
-    const struct wb_ranking *const ranking = &of->ranking;
+    const struct wb_ranking *const found = &of->ranking;
     wb_text_append(
         text, "\n%s at %.3g mm depends on (R2 %.3f, %.3f to %.3f)%s\n", of->of, of->at / WB_MM,
-        ranking->r2, ranking->low, ranking->high,
-        ranking->is_valid
+        found->r2, found->low, found->high,
+        found->is_valid
             ? ":"
             : ": no ranking, because ranks of the inputs do not explain it (R2 below 0.9)");
-    for (int g = 0; ranking->is_valid && g < ranking->n_groups; g++) {
-        const struct wb_ranking_share *const share = &ranking->group[g];
+    for (int g = 0; found->is_valid && g < found->n_groups; g++) {
+        const struct wb_ranking_share *const share = &found->group[g];
         wb_text_append(text, "    %5.1f %%  (%.1f to %.1f)  %s\n", share->share / WB_PERCENT,
                        share->low / WB_PERCENT, share->high / WB_PERCENT,
                        bands->inputs.group_name[share->group]);

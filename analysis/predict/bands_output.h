@@ -8,6 +8,7 @@
 #ifndef WB_ANALYSIS_PREDICT_BANDS_OUTPUT_H
 #define WB_ANALYSIS_PREDICT_BANDS_OUTPUT_H
 
+#include "analysis/keys/keys.h"
 #include "analysis/plot/figure.h"
 #include "analysis/predict/bands.h"
 #include "base/json.h"
@@ -26,6 +27,9 @@ enum {
  * include the model's error. */
 void wb_bands_output_draw(const struct wb_bands *bands, struct wb_figure *figure,
                           struct wb_panel *panels[WB_BANDS_OUTPUT_PANELS]);
+
+/* Keys of `uncertainty`. */
+extern const struct wb_keys wb_bands_output_keys;
 
 /* Sets the member `uncertainty` of an object. */
 void wb_bands_output_describe(const struct wb_bands *bands, struct wb_json *object);

@@ -48,63 +48,6 @@ static const struct wb_key wb_schema_machine_rows[] = {
 };
 WB_KEYS(wb_schema_machine, "machine", "The testing machine, as its machine file describes it.");
 
-static const struct wb_key interval_rows[] = {
-    {"median", NUMBER | UNKNOWN, "", "median of the runs"},
-    {"low", NUMBER | UNKNOWN, "", "lower end of the band of 90 %, with the model's error"},
-    {"high", NUMBER | UNKNOWN, "", "upper end of that band"},
-    {"runs_low", NUMBER | UNKNOWN, "", "5 % quantile of the runs alone"},
-    {"runs_high", NUMBER | UNKNOWN, "", "95 % quantile of the runs alone"},
-};
-static WB_KEYS(interval, "band", "A band of a predicted number, in the unit of its key.");
-
-static const struct wb_key group_rows[] = {
-    {"group", TEXT, "", "group of inputs"},
-    {"share", NUMBER, "", "share of the ranks' variance that this group explains"},
-    {"share_low", NUMBER, "", "lower end of its interval of 90 %"},
-    {"share_high", NUMBER, "", "upper end of its interval of 90 %"},
-};
-static WB_KEYS(group, "ranking_group", "The influence of a group of inputs.");
-
-static const struct wb_key ranking_rows[] = {
-    {"of", TEXT, "", "result that the ranking is of", .choices = "force|deflection_springback"},
-    {"deflection_mm", NUMBER | UNKNOWN, "mm", "deflection at which the result is taken"},
-    {"R2", NUMBER | UNKNOWN, "", "share of the variance that ranks explain"},
-    {"R2_low", NUMBER | UNKNOWN, "", "lower end of its interval"},
-    {"R2_high", NUMBER | UNKNOWN, "", "upper end of its interval"},
-    {"groups", OBJECT | LIST | OPTIONAL, "", "the groups of inputs; only from R2 = 0.9 on", &group},
-};
-static WB_KEYS(ranking, "ranking", "Which inputs the width of a band depends on.");
-
-static const struct wb_key of_case_rows[] = {
-    {"case", TEXT, "", "`file`, or the name of a scenario or of a combination of the sweep"},
-    {"wires", INTEGER, "", "number of wires"},
-    {"packing", TEXT, "", "packing of the wires"},
-    {"tape_layers", NUMBER, "", "layers of tape, with overlap; 0: no tape"},
-    {"tape_outline", TEXT, "", "how the tape lies round the wires", .choices = "none|circle|hull"},
-    {"runs_not_converged", INTEGER, "", "runs that were not computed to the end"},
-    {"draws_limited", INTEGER, "", "runs with a drawn law that had to be limited"},
-    {"deflection_mm", NUMBER | OPTIONAL, "mm", "largest deflection that the band covers"},
-    {"force_N", OBJECT | OPTIONAL, "N", "force at that deflection", &interval},
-    {"deflection_springback", OBJECT, "",
-     "springback of the deflection: 1 less the residual over the largest deflection", &interval},
-    {"residual_curvature_ratio", OBJECT, "",
-     "largest curvature along the bundle at zero force over that at the largest deflection",
-     &interval},
-    {"ranking", OBJECT | LIST, "", "which inputs the bands depend on", &ranking},
-};
-static WB_KEYS(of_case, "prediction_case", "A case that was predicted.");
-
-static const struct wb_key wb_schema_uncertainty_rows[] = {
-    {"confidence", NUMBER, "", "probability of the bands"},
-    {"model_error", NUMBER, "", "standard deviation of the model's error, of the largest value"},
-    {"runs", INTEGER, "", "runs of each case"},
-    {"seed", INTEGER, "", "seed of the draws"},
-    {"stopped", FLAG, "", "interrupted: the last case is missing"},
-    {"laws_of_wires", TEXT | LIST, "", "source of the law of each kind of wire"},
-    {"cases", OBJECT | LIST, "", "the cases", &of_case},
-};
-WB_KEYS(wb_schema_uncertainty, "uncertainty", "Bands of a bundle's prediction.");
-
 /* --- reports of all kinds --- */
 
 static const struct wb_key amends_rows[] = {

@@ -1,4 +1,5 @@
 /* Keys of report.json of comparison, bundles, prediction and machine campaigns. */
+#include "analysis/predict/bands_output.h"
 #include "analysis/schema/report_keys.h"
 #include "fe/model/bundle_model.h"
 
@@ -257,7 +258,7 @@ static const struct wb_key predicted_rows[] = {
     {"label", TEXT, "", "name in the report"},
     {"bundle", TEXT, "", "name of the bundle's file"},
     {"inputs_sha256", TEXT, "", "SHA-256 of the inputs of the section model"},
-    {"uncertainty", OBJECT | OPTIONAL, "", "bands", &wb_schema_uncertainty},
+    {"uncertainty", OBJECT | OPTIONAL, "", "bands", &wb_bands_output_keys},
     {"problem", TEXT | OPTIONAL, "", "why there are no bands"},
     {"tests", OBJECT | LIST, "", "tests", &test},
 };

@@ -2,6 +2,7 @@
 #include "analysis/dataset/simulated.h"
 #include "analysis/dataset/simulated_bundle.h"
 #include "analysis/dataset/simulated_section.h"
+#include "analysis/predict/bands_output.h"
 #include "analysis/schema/tables.h"
 #include "fe/model/bundle_model.h"
 #include "fe/model/bundle_override.h"
@@ -249,7 +250,7 @@ static const struct wb_key section_rows[] = {
     {"inputs", OBJECT, "", "all that decides the numbers", &section_inputs},
     {.of = &wb_simulated_bundle_head_keys},
     {.of = &wb_simulated_section_keys},
-    {"uncertainty", OBJECT | OPTIONAL, "", "of `--uncertain`: bands", &wb_schema_uncertainty},
+    {"uncertainty", OBJECT | OPTIONAL, "", "of `--uncertain`: bands", &wb_bands_output_keys},
 };
 static WB_KEYS(section, "simulation_section", "`solve bundle --model section`.");
 

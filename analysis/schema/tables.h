@@ -16,7 +16,6 @@ extern const struct wb_keys wb_schema_campaign;
 extern const struct wb_keys wb_schema_excluded;
 extern const struct wb_keys wb_schema_sum;
 extern const struct wb_keys wb_schema_machine;
-extern const struct wb_keys wb_schema_uncertainty;
 
 /* Parts of dataset.json that reports copy (align_keys.c). */
 extern const struct wb_keys wb_schema_correction;
