@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "analysis/align/align_private.h"
+#include "analysis/keys/common.h"
 #include "base/units.h"
-#include "base/version.h"
 
 #define WB_LOG_DOMAIN "align"
 
@@ -103,10 +103,7 @@ void wb_align_describe(struct wb_align *align)
     wb_json_set_text(document, "name", align->name);
     wb_json_set_text(document, "source",
                      align->is_virtual ? "test on a virtual rig" : "test on the bench");
-    struct wb_json *const tool = wb_json_set_object(document, "tool");
-    wb_json_set_text(tool, "name", "wirebench align");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
+    wb_keys_put_tool(document, "wirebench align");
     describe_settings(align, document);
     describe_specimen(align, document);
     describe_rig(align, document);

@@ -6,9 +6,9 @@
 
 #include "analysis/calibration/law/bending.h"
 #include "analysis/cards/card_curve.h"
+#include "analysis/keys/common.h"
 #include "base/json.h"
 #include "base/number.h"
-#include "base/version.h"
 #include "fe/material/law_json.h"
 
 #define WB_LOG_DOMAIN "card"
@@ -113,10 +113,7 @@ static struct wb_json *make_json(const struct wb_card_source *source,
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "card", warning ? warning : "wirebench table");
     wb_json_set_integer(root, "schema", 1);
-    struct wb_json *const tool = wb_json_set_object(root, "tool");
-    wb_json_set_text(tool, "name", "wirebench");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
+    wb_keys_put_tool(root, "wirebench");
     wb_json_set_text(root, "units", "SI: m, kg, s, N, Pa, rad; as the keys say");
     wb_json_set_text(root, "wire", p->wire);
     wb_json_set_number(root, "outer_diameter_m", p->outer_diameter);

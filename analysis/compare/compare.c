@@ -7,9 +7,9 @@
 #include <gsl/gsl_cdf.h>
 
 #include "analysis/calibration/law/bending.h"
+#include "analysis/keys/common.h"
 #include "base/interpolate.h"
 #include "base/units.h"
-#include "base/version.h"
 
 #define WB_LOG_DOMAIN "compare"
 
@@ -268,10 +268,7 @@ struct wb_json *wb_compare_json(const struct wb_compare *compare,
 {
     static const char *const keys[] = {"A", "B"};
     struct wb_json *const root = wb_json_create();
-    struct wb_json *const tool = wb_json_set_object(root, "tool");
-    wb_json_set_text(tool, "name", "wirebench compare");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
+    wb_keys_put_tool(root, "wirebench compare");
     for (int i = 0; i < WB_COMPARE_SIDES; i++) {
         const struct wb_properties *const p = properties[i];
         struct wb_json *const side = wb_json_set_object(root, keys[i]);

@@ -7,12 +7,12 @@
 #include <string.h>
 
 #include "analysis/dataset/fit.h"
+#include "analysis/keys/common.h"
 #include "base/compress.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/units.h"
-#include "base/version.h"
 #include "daq/take/table_columns.h"
 
 #define WB_LOG_DOMAIN "import"
@@ -236,10 +236,7 @@ static void set_document(const struct import *import)
     const struct wb_text_table *const table = &import->table;
     char delimiter[2] = {table->delimiter, '\0'}, decimal[2] = {table->decimal, '\0'};
     wb_json_set_text(document, "name", wb_file_name(import->from->path));
-    struct wb_json *const tool = wb_json_set_object(document, "tool");
-    wb_json_set_text(tool, "name", "wirebench import force");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
+    wb_keys_put_tool(document, "wirebench import force");
     struct wb_json *const from = wb_json_set_object(document, "import");
     wb_json_set_text(from, "file", wb_file_name(import->from->path));
     wb_json_set_integer(from, "bytes", (int64_t)import->bytes);

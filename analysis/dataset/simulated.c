@@ -4,8 +4,8 @@
 #include <stdio.h>
 
 #include "analysis/dataset/csv_table.h"
+#include "analysis/keys/common.h"
 #include "base/units.h"
-#include "base/version.h"
 #include "fe/material/law_json.h"
 #include "fe/model/model_inputs.h"
 
@@ -49,14 +49,6 @@ void wb_simulated_append_energies(struct wb_text *text, const double *columns, s
         wb_csv_table_append_number(text, columns[i], i == 1 ? MM_SHIFT : 0);
     }
     wb_text_append(text, "\n");
-}
-
-void wb_simulated_describe_tool(struct wb_json *document)
-{
-    struct wb_json *const tool = wb_json_set_object(document, "tool");
-    wb_json_set_text(tool, "name", "wirebench");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
 }
 
 static void add_rows(struct wb_dataset *dataset, const struct wb_loading_steps *loading,
@@ -152,7 +144,7 @@ static void describe(struct wb_json *document, const struct wb_test_info *info, 
     wb_json_set_number(simulation, "wall_s", origin->wall);
     wb_json_set_number(simulation, "cpu_s", origin->cpu);
 
-    wb_simulated_describe_tool(document);
+    wb_keys_put_tool(document, "wirebench");
 }
 
 void wb_simulated_fill(struct wb_dataset *dataset, const struct wb_test_info *info,

@@ -73,9 +73,6 @@ void wb_simulated_add_row(struct wb_dataset *dataset, struct wb_row row, const d
  * they are not finite. */
 void wb_simulated_append_energies(struct wb_text *text, const double *columns, size_t n);
 
-/* dataset.json's `tool`: this program. */
-void wb_simulated_describe_tool(struct wb_json *document);
-
 /* Set the `inputs` of dataset.json: everything that decides the dataset's numbers, with the solver
  * and its version. */
 void wb_simulated_cantilever_inputs(struct wb_json *object,

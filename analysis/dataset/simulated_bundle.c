@@ -5,6 +5,7 @@
 
 #include "analysis/dataset/csv_table.h"
 #include "analysis/dataset/simulated.h"
+#include "analysis/keys/common.h"
 #include "analysis/keys/row.h"
 #include "base/file.h"
 #include "base/text.h"
@@ -304,7 +305,7 @@ void wb_simulated_bundle_fill(struct wb_dataset *dataset, const struct wb_simula
     if (bundle->surface_deflection > 0.0)
         wb_json_set_number(simulation, "surface_deflection_mm", bundle->surface_deflection / WB_MM);
     wb_simulated_bundle_describe(simulation, bundle);
-    wb_simulated_describe_tool(dataset->document);
+    wb_keys_put_tool(dataset->document, "wirebench");
     add_rows(dataset, bundle->result);
 }
 

@@ -5,6 +5,7 @@
 #include "analysis/dataset/csv_table.h"
 #include "analysis/dataset/simulated.h"
 #include "analysis/dataset/simulated_bundle.h"
+#include "analysis/keys/common.h"
 #include "analysis/keys/row.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -176,7 +177,7 @@ void wb_simulated_section_fill(struct wb_dataset *dataset,
     };
 
     wb_simulated_section_describe(wb_simulated_bundle_begin(dataset, &head), section);
-    wb_simulated_describe_tool(dataset->document);
+    wb_keys_put_tool(dataset->document, "wirebench");
     add_rows(dataset, section->run);
 }
 

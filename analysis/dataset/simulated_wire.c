@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "analysis/dataset/simulated.h"
+#include "analysis/keys/common.h"
 #include "analysis/keys/row.h"
 #include "base/file.h"
 #include "base/units.h"
@@ -262,7 +263,7 @@ static void describe(struct wb_dataset *dataset, const struct wb_simulated_wire 
     describe_run(simulation, wire);
     describe_steps(simulation, dataset, wire->model, wire->run);
 
-    wb_simulated_describe_tool(document);
+    wb_keys_put_tool(document, "wirebench");
 }
 
 void wb_simulated_fill_wire(struct wb_dataset *dataset, const struct wb_simulated_wire *wire)

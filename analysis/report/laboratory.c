@@ -3,6 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "analysis/keys/row.h"
 #include "analysis/report/pages.h"
 #include "base/text.h"
 
@@ -221,22 +222,49 @@ void wb_laboratory_put_pages(struct wb_document *document, const struct wb_labor
 
 /* --- numbers --- */
 
+#define LABORATORY(member) WB_AT(struct wb_laboratory, member)
+
+static const struct wb_key amends_rows[] = {
+    {"report", LABORATORY(amends.report), "", "number of the report that this one replaces"},
+    {"issued", LABORATORY(amends.issued), "", "date of that report"},
+    {"why", LABORATORY(amends.why), "", "what changed"},
+};
+static WB_KEYS(amends, "amends", "The report that this one replaces.");
+
+static const struct wb_key wb_laboratory_keys_rows[] = {
+    {"report", LABORATORY(report) | IF_KNOWN, "", "number of the report"},
+    {"name", LABORATORY(name) | IF_KNOWN, "", "name of the laboratory"},
+    {"address", LABORATORY(address) | IF_KNOWN, "", "address of the laboratory"},
+    {"place", LABORATORY(place) | IF_KNOWN, "", "place of the tests"},
+    {"customer", LABORATORY(customer) | IF_KNOWN, "", "customer, with contact"},
+    {"item", LABORATORY(item) | IF_KNOWN, "", "items that were tested"},
+    {"item_state", LABORATORY(item_state) | IF_KNOWN, "", "condition of the items"},
+    {"received", LABORATORY(received) | IF_KNOWN, "", "date on which the items were received"},
+    {"tested_from", LABORATORY(tested_from) | IF_KNOWN, "", "first day of the tests"},
+    {"tested_until", LABORATORY(tested_until) | IF_KNOWN, "", "last day of the tests"},
+    {"issued", LABORATORY(issued) | IF_KNOWN, "", "date of the report"},
+    {"method", LABORATORY(method) | IF_KNOWN, "", "method"},
+    {"deviations", LABORATORY(deviations) | IF_KNOWN, "", "deviations from the method"},
+    {"sampling", LABORATORY(sampling) | IF_KNOWN, "", "how the items were sampled"},
+    {"external", LABORATORY(external) | IF_KNOWN, "", "results from external providers"},
+    {"environment", LABORATORY(environment) | IF_KNOWN, "", "environmental conditions"},
+    {"authorised_by", LABORATORY(authorised_by) | IF_KNOWN, "", "who authorises the report"},
+    {"decision_rule", WB_CHOICE(struct wb_laboratory, rule), "", "rule by which limits are judged",
+     .choices = "simple|guarded"},
+    {"amends", OBJECT | OPTIONAL, "", "report that this one replaces", &amends},
+    {"missing", TEXT | LIST, "", "required fields that the campaign file lacks"},
+};
+WB_KEYS(wb_laboratory_keys, "laboratory",
+        "The fields of a laboratory, as the campaign file has them.");
+
 void wb_laboratory_put_numbers(struct wb_json *root, const struct wb_laboratory *laboratory)
 {
     if (!laboratory->is_given)
         return;
     struct wb_json *const of = wb_json_set_object(root, "laboratory");
-    for (size_t i = 0; i < WB_COUNT(fields); i++) {
-        if (text_of(laboratory, &fields[i])[0])
-            wb_json_set_text(of, fields[i].key, text_of(laboratory, &fields[i]));
-    }
-    wb_json_set_text(of, "decision_rule", wb_verdict_rules[laboratory->rule]);
-    if (laboratory->amends.report[0]) {
-        struct wb_json *const amends = wb_json_set_object(of, "amends");
-        wb_json_set_text(amends, "report", laboratory->amends.report);
-        wb_json_set_text(amends, "issued", laboratory->amends.issued);
-        wb_json_set_text(amends, "why", laboratory->amends.why);
-    }
+    WB_PUT(of, &wb_laboratory_keys, struct wb_laboratory, laboratory);
+    if (laboratory->amends.report[0])
+        WB_PUT(wb_json_set_object(of, "amends"), &amends, struct wb_laboratory, laboratory);
     struct wb_json *const missing = wb_json_set_array(of, "missing");
     for (size_t i = 0; i < WB_COUNT(fields); i++) {
         if (is_missing(laboratory, &fields[i]))

@@ -32,6 +32,7 @@
 
 #include <stdbool.h>
 
+#include "analysis/keys/keys.h"
 #include "analysis/report/document.h"
 #include "analysis/report/verdict.h"
 #include "base/config.h"
@@ -64,6 +65,9 @@ int wb_laboratory_missing(const struct wb_laboratory *laboratory);
 /* Puts number, amendment, fields and missing fields before everything else in a document, and the
  * end of the report behind it; without fields, one line that it is not a test report. */
 void wb_laboratory_put_pages(struct wb_document *document, const struct wb_laboratory *laboratory);
+
+/* Keys of `laboratory` in report.json. */
+extern const struct wb_keys wb_laboratory_keys;
 
 /* Adds `laboratory` to the numbers: the fields that are given, `missing`; nothing where none is. */
 void wb_laboratory_put_numbers(struct wb_json *root, const struct wb_laboratory *laboratory);

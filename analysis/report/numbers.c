@@ -1,7 +1,37 @@
 #include "analysis/report/numbers.h"
 
+#include "analysis/keys/common.h"
+#include "analysis/keys/row.h"
 #include "analysis/report/pages.h"
-#include "base/version.h"
+
+#define CAMPAIGN(member) WB_AT(struct wb_campaign, member)
+
+static const struct wb_key wb_numbers_campaign_keys_rows[] = {
+    {"file", CAMPAIGN(name), "", "name of the campaign file"},
+    {"sha256", CAMPAIGN(sha256), "", "SHA-256 of the campaign file"},
+};
+WB_KEYS(wb_numbers_campaign_keys, "campaign", "The campaign file.");
+
+static const struct wb_key report_end_rows[] = {
+    {"laboratory", OBJECT | OPTIONAL, "", "fields of a laboratory", &wb_laboratory_keys},
+    {"files", TEXT | LIST, "", "files of the report, relative to its folder"},
+};
+static WB_KEYS(report_end, "report_end", "");
+
+static const struct wb_key wb_numbers_head_keys_rows[] = {
+    {"title", TEXT, "", "title of the campaign"},
+    {"data", TEXT, "", "origin of the data",
+     .choices = "measured|measured (virtual rig)|simulation"},
+    {"schema", INTEGER, "", "layout of the file, 1"},
+    {"tool", OBJECT, "", "program that wrote the report", &wb_keys_tool},
+    {"campaign", OBJECT, "", "campaign file", &wb_numbers_campaign_keys},
+    {"complete", WB_AT(struct wb_kind_outcome, is_complete), "",
+     "false: data are missing (exit code 3)"},
+    {"limit_exceeded", WB_AT(struct wb_kind_outcome, exceeds_limit), "",
+     "true: a limit of the campaign is exceeded (exit code 4)"},
+    {.of = &report_end},
+};
+WB_KEYS(wb_numbers_head_keys, "report_head", "");
 
 void wb_numbers_put_title(struct wb_json *root, const char *title, const char *data)
 {
@@ -12,23 +42,18 @@ void wb_numbers_put_title(struct wb_json *root, const char *title, const char *d
 void wb_numbers_put_program(struct wb_json *root)
 {
     wb_json_set_integer(root, "schema", 1);
-    struct wb_json *const tool = wb_json_set_object(root, "tool");
-    wb_json_set_text(tool, "name", "wirebench report");
-    wb_json_set_text(tool, "version", wb_version());
-    wb_json_set_text(tool, "revision", wb_version_revision());
+    wb_keys_put_tool(root, "wirebench report");
 }
 
 void wb_numbers_put_campaign(struct wb_json *root, const struct wb_campaign *campaign)
 {
     struct wb_json *const file = wb_json_set_object(root, "campaign");
-    wb_json_set_text(file, "file", campaign->name);
-    wb_json_set_text(file, "sha256", campaign->sha256);
+    WB_PUT(file, &wb_numbers_campaign_keys, struct wb_campaign, campaign);
 }
 
 void wb_numbers_put_outcome(struct wb_json *root, const struct wb_kind_outcome *outcome)
 {
-    wb_json_set_boolean(root, "complete", outcome->is_complete);
-    wb_json_set_boolean(root, "limit_exceeded", outcome->exceeds_limit);
+    WB_PUT(root, &wb_numbers_head_keys, struct wb_kind_outcome, outcome);
 }
 
 struct wb_json *wb_numbers_create(const struct wb_campaign *campaign, const char *data,

@@ -4,9 +4,13 @@
 #ifndef WB_ANALYSIS_REPORT_NUMBERS_H
 #define WB_ANALYSIS_REPORT_NUMBERS_H
 
+#include "analysis/keys/keys.h"
 #include "analysis/report/kind.h"
 #include "base/json.h"
 #include "fe/material/material.h"
+
+/* Keys of all kinds of report, and of `campaign`. */
+extern const struct wb_keys wb_numbers_head_keys, wb_numbers_campaign_keys;
 
 /* Starts report.json; `data` is "simulation" or "measured". The caller destroys it. */
 struct wb_json *wb_numbers_create(const struct wb_campaign *campaign, const char *data,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/keys/row.h"
 #include "analysis/report/reasons.h"
 #include "base/memory.h"
 #include "fe/model/model_inputs.h"
@@ -96,12 +97,20 @@ const struct wb_json *wb_simulation_of(const struct wb_simulation_result *result
     return wb_json_get(result->dataset.document, "simulation");
 }
 
+static const struct wb_key wb_simulation_state_keys_rows[] = {
+    {"dataset", WB_AT(struct wb_simulation, name), "", "name of the dataset"},
+    {"state", WB_CHOICE(struct wb_simulation_result, state), "", "whether the dataset is used",
+     .choices = "not wanted|missing|outdated|refused|used"},
+    {"command", TEXT, "", "command that computes it"},
+    {"problem", TEXT | OPTIONAL, "", "why it is not used"},
+};
+WB_KEYS(wb_simulation_state_keys, "simulation_state", "");
+
 void wb_simulation_describe(struct wb_json *object, const struct wb_simulation *wanted,
                             const struct wb_simulation_result *result)
 {
-    static const char *const states[] = {"not wanted", "missing", "outdated", "refused", "used"};
-    wb_json_set_text(object, "dataset", wanted->name);
-    wb_json_set_text(object, "state", states[result->state]);
+    WB_PUT(object, &wb_simulation_state_keys, struct wb_simulation, wanted);
+    WB_PUT(object, &wb_simulation_state_keys, struct wb_simulation_result, result);
     wb_json_set_text(object, "command", wb_text_string(&wanted->command));
     if (result->state != WB_SIMULATION_USABLE)
         wb_json_set_text(object, "problem", wb_text_string(&result->problem));

@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 #include "analysis/dataset/dataset.h"
+#include "analysis/keys/keys.h"
 #include "analysis/report/campaign.h"
 #include "analysis/solve/solve_settings.h"
 #include "base/file.h"
@@ -76,6 +77,9 @@ struct wb_simulation_reader {
 void wb_simulation_load(struct wb_simulation_result *result, const struct wb_simulation *wanted,
                         const struct wb_simulation_reader *reader);
 void wb_simulation_result_release(struct wb_simulation_result *result);
+
+/* Keys that wb_simulation_describe() sets. */
+extern const struct wb_keys wb_simulation_state_keys;
 
 /* Sets its name, state, command, and problem. */
 void wb_simulation_describe(struct wb_json *object, const struct wb_simulation *wanted,

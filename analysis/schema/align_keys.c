@@ -252,7 +252,7 @@ static const struct wb_key recording_rows[] = {
     {"notes", TEXT | OPTIONAL, "", "notes of the operator"},
     {"recorded_with_version", TEXT | OPTIONAL, "", "version of the program that recorded"},
     {"recorded_with_revision", TEXT | OPTIONAL, "", "revision of the program that recorded"},
-    {"excluded", OBJECT | OPTIONAL, "", "exclusion of the test", &wb_schema_excluded},
+    {"excluded", OBJECT | OPTIONAL, "", "exclusion of the test", &wb_keys_excluded},
     {"corrected", OBJECT | OPTIONAL, "", "files that hold in place of recorded ones", &corrected},
 };
 static WB_KEYS(recording, "recording", "The recording of a dataset.");
@@ -319,7 +319,7 @@ static WB_KEYS(rig, "rig", "The rig, as its file says.");
 
 static const struct wb_key wb_schema_aligned_rows[] = {
     {"source", TEXT, "", "test on the bench, or on a virtual rig"},
-    {"tool", OBJECT, "", "program that aligned the recording", &wb_schema_tool},
+    {"tool", OBJECT, "", "program that aligned the recording", &wb_keys_tool},
     {"settings", OBJECT, "", "settings of the alignment", &settings},
     {"specimen", OBJECT, "", "the specimen", &specimen},
     {"rig", OBJECT, "", "the rig", &rig},

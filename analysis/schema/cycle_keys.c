@@ -11,7 +11,7 @@ static const struct wb_key rank_rows[] = {
     {"flexural_rigidity_N_mm2", NUMBER | UNKNOWN, "N mm2", "EI at zero curvature by this law"},
     {"residual_curvature_ratio", NUMBER | UNKNOWN, "", "residual curvature ratio by this law"},
     {"parameters", OBJECT | OPTIONAL, "", "the law's numbers, of a law that counts",
-     &wb_schema_law_of_json},
+     &wb_keys_law_of_json},
 };
 static WB_KEYS(rank, "ranked_law", "A law that was fitted.");
 
@@ -114,7 +114,7 @@ static const struct wb_key wb_schema_cycle_rows[] = {
     {"largest_curvature_1_m", NUMBER | UNKNOWN, "1/m",
      "curvature at the clamp that all specimens reached"},
     {"hardening_rule", OBJECT, "", "choice of the law", &rule},
-    {"law", OBJECT, "", "means over the specimens of the law's numbers", &wb_schema_law_of_json},
+    {"law", OBJECT, "", "means over the specimens of the law's numbers", &wb_keys_law_of_json},
     {"ludwik_equivalent", OBJECT, "", "Ludwik law that bends alike on a first loading",
      &equivalent},
     {"identifiable", OBJECT, "", "which numbers of a Ludwik law the data determine", &identifiable},

@@ -112,10 +112,10 @@ static WB_KEYS(aligned, "dataset_of_recording", "The dataset of a recording, by 
 
 static const struct wb_key imported_rows[] = {
     {.of = &common},
-    {"tool", OBJECT, "", "program that imported the file", &wb_schema_tool},
+    {"tool", OBJECT, "", "program that imported the file", &wb_keys_tool},
     {"import", OBJECT, "", "the file", &import},
     {"complete", FLAG, "", "false: the file is cut, or there are gaps in time"},
-    {"machine", OBJECT, "", "testing machine", &wb_schema_machine},
+    {"machine", OBJECT, "", "testing machine", &wb_keys_machine},
     {"test_piece", OBJECT, "", "what else is known of the specimen", &piece},
 };
 static WB_KEYS(imported, "dataset_of_machine",
@@ -126,8 +126,8 @@ static const struct wb_key simulated_rows[] = {
     {"complete", FLAG | OPTIONAL, "",
      "whether the whole loading was computed; of `cantilever` and `bending3p` see `converged`"},
     {"simulation", OBJECT, "", "the computation", &wb_schema_simulation},
-    {"tool", OBJECT, "", "program that computed the dataset", &wb_schema_tool},
-    {"machine", OBJECT | OPTIONAL, "", "of `bending3p`: the testing machine", &wb_schema_machine},
+    {"tool", OBJECT, "", "program that computed the dataset", &wb_keys_tool},
+    {"machine", OBJECT | OPTIONAL, "", "of `bending3p`: the testing machine", &wb_keys_machine},
     {"test_piece", OBJECT | OPTIONAL, "", "of `bending3p`: the specimen", &piece},
 };
 static WB_KEYS(simulated, "dataset_of_simulation", "The dataset of a simulation, by `solve`.");

@@ -91,7 +91,7 @@ static const struct wb_key specimen_rows[] = {
      "distance of the middle of the natural shape from that of an even curvature"},
     {"level_mm", NUMBER | OPTIONAL, "mm", "level of zero deflection"},
     {"misfit", NUMBER | OPTIONAL, "", "RMS of the force residuals over F_max"},
-    {.of = &wb_schema_ludwik},
+    {.of = &wb_keys_ludwik},
     {"ludwik_misfit", NUMBER | OPTIONAL, "", "RMS of the relative differences of the moment"},
 };
 static WB_KEYS(specimen, "properties_specimen",
@@ -157,7 +157,7 @@ static const struct wb_key wb_schema_properties_rows[] = {
     {"wire", TEXT, "", "name of the product"},
     {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
     {"mass_per_length_kg_m", NUMBER, "kg/m", "mass per length"},
-    {.of = &wb_schema_ludwik},
+    {.of = &wb_keys_ludwik},
     {"poissons_ratio", NUMBER, "", "Poisson's ratio"},
     {"deviations", OBJECT | OPTIONAL, "", "standard uncertainties; absent with one sample",
      &deviations},
@@ -167,7 +167,7 @@ static const struct wb_key wb_schema_properties_rows[] = {
     {"law", OBJECT | OPTIONAL, "",
      "law of the wire; the four numbers are then its Ludwik equivalent. Absent: Ludwik's law with "
      "isotropic hardening",
-     &wb_schema_law_of_file},
+     &wb_keys_law_of_file},
     {"ludwik_misfit", NUMBER | OPTIONAL, "",
      "of the equivalent: RMS of the relative differences of the moment"},
     {.type = OPTIONAL, .quantities = true},

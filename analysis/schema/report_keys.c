@@ -23,7 +23,7 @@ static const struct wb_key recording_rows[] = {
     {"used", FLAG, "", "the recording is used"},
     {"seed", INTEGER | OPTIONAL, "", "seed of the virtual rig"},
     {"sha256", TEXT | OPTIONAL, "", "SHA-256 of the uncompressed recording"},
-    {"excluded", OBJECT | OPTIONAL, "", "exclusion of the test", &wb_schema_excluded},
+    {"excluded", OBJECT | OPTIONAL, "", "exclusion of the test", &wb_keys_excluded},
     {"problem", TEXT | OPTIONAL, "", "why the recording is not used"},
     {"sample", INTEGER | OPTIONAL, "", "number of the piece"},
     {"length_mm", NUMBER | OPTIONAL, "mm", "free length"},
@@ -40,7 +40,7 @@ static WB_KEYS(recording, "report_recording",
                "A recording; the keys from `sample` on are of a used one.");
 
 static const struct wb_key published_rows[] = {
-    {.of = &wb_schema_ludwik},
+    {.of = &wb_keys_ludwik},
     {"source", TEXT, "", "source of the values"},
 };
 static WB_KEYS(published, "published", "Published properties of a wire.");
@@ -121,7 +121,7 @@ static WB_KEYS(search, "search", "The search for K and n.");
 
 static const struct wb_key calibration_rows[] = {
     {.of = &state},
-    {"properties", OBJECT | OPTIONAL, "", "E, sigma_Y, K and n", &wb_schema_ludwik},
+    {"properties", OBJECT | OPTIONAL, "", "E, sigma_Y, K and n", &wb_keys_ludwik},
     {"standard_uncertainties", OBJECT | OPTIONAL, "", "their standard uncertainties",
      &uncertainties},
     {"bow_corrected", FLAG | OPTIONAL, "", "E and sigma_Y were corrected for the samples' bows"},
@@ -292,7 +292,7 @@ static const struct wb_key wire_rows[] = {
 static WB_KEYS(wire, "report_wire", "A wire of a campaign of recordings.");
 
 static const struct wb_key recordings_rows[] = {
-    {.of = &wb_schema_report_head},
+    {.of = &wb_numbers_head_keys},
     {"virtual_rig", FLAG, "", "a recording that is used comes from a virtual rig"},
     {"settings", OBJECT, "", "settings of the calibration", &settings},
     {"limits", OBJECT, "", "limits of the campaign", &limits},
@@ -333,8 +333,8 @@ static const struct wb_key build_rows[] = {
     {"compiler", TEXT, "", "compiler"},
     {"options", TEXT, "", "options of the compiler that choose machine code"},
     {"processor", TEXT, "", "vector instructions, and the processor that OpenBLAS assumes"},
-    {"libraries", OBJECT | LIST, "", "libraries of the process", &wb_schema_sum},
-    {"fonts", OBJECT | LIST, "", "fonts of the report", &wb_schema_sum},
+    {"libraries", OBJECT | LIST, "", "libraries of the process", &wb_keys_sum},
+    {"fonts", OBJECT | LIST, "", "fonts of the report", &wb_keys_sum},
 };
 static WB_KEYS(build, "build", "The program that made the report.");
 
@@ -342,7 +342,7 @@ static const struct wb_key wb_schema_manifest_rows[] = {
     {"report", TEXT, "", "number of the report; empty without a laboratory"},
     {"title", TEXT, "", "title of the report"},
     {"amends", TEXT | OPTIONAL, "", "number of the report that this one replaces"},
-    {"campaign", OBJECT, "", "campaign file", &wb_schema_campaign},
+    {"campaign", OBJECT, "", "campaign file", &wb_numbers_campaign_keys},
     {"inputs", OBJECT | LIST, "", "inputs of the report, sorted", &manifest_input},
     {"files", OBJECT | LIST, "", "files of the report", &manifest_file},
     {"build", OBJECT, "", "program that made the report", &build},

@@ -2,10 +2,9 @@
 #ifndef WB_ANALYSIS_SCHEMA_REPORT_KEYS_H
 #define WB_ANALYSIS_SCHEMA_REPORT_KEYS_H
 
+#include "analysis/report/numbers.h"
+#include "analysis/report/simulation.h"
 #include "analysis/schema/tables.h"
-
-extern const struct wb_keys wb_schema_report_head; /* keys of all kinds but `machine` */
-extern const struct wb_keys wb_schema_simulation_state;
 
 extern const struct wb_keys wb_schema_report_comparison;
 extern const struct wb_keys wb_schema_report_bundles;

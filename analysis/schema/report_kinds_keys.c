@@ -21,7 +21,7 @@ static const struct wb_key section_rows[] = {
 static WB_KEYS(section, "section", "A section with stress fields.");
 
 static const struct wb_key run_rows[] = {
-    {.of = &wb_schema_simulation_state},
+    {.of = &wb_simulation_state_keys},
     {"elements", NUMBER | UNKNOWN, "", "number of elements"},
     {"degrees_of_freedom", NUMBER | UNKNOWN, "", "number of unknowns"},
     {"iterations", NUMBER | UNKNOWN, "", "iterations of the equilibrium"},
@@ -80,9 +80,9 @@ static const struct wb_key rod_rows[] = {
 static WB_KEYS(rod, "rod", "A rod under the same force.");
 
 static const struct wb_key fit_rows[] = {
-    {"printed", OBJECT | OPTIONAL, "", "published properties", &wb_schema_ludwik},
+    {"printed", OBJECT | OPTIONAL, "", "published properties", &wb_keys_ludwik},
     {"problem", TEXT | OPTIONAL, "", "why there is no fit"},
-    {"properties", OBJECT | OPTIONAL, "", "fitted properties", &wb_schema_ludwik},
+    {"properties", OBJECT | OPTIONAL, "", "fitted properties", &wb_keys_ludwik},
     {"rms_over_largest_deflection", NUMBER | UNKNOWN | OPTIONAL, "",
      "RMS error over the largest deflection"},
     {"F_max_N", NUMBER | OPTIONAL, "N", "largest force"},
@@ -94,7 +94,7 @@ static const struct wb_key fit_rows[] = {
 static WB_KEYS(fit, "comparison_fit", "The homogenised law fitted to the solid.");
 
 static const struct wb_key wb_schema_report_comparison_rows[] = {
-    {.of = &wb_schema_report_head},
+    {.of = &wb_numbers_head_keys},
     {"jacket_modulus_per_percent_of_core_MPa", NUMBER, "MPa",
      "change of the jacket's E by eq. 8 when the core's E changes by 1 %"},
     {"cases", OBJECT | LIST, "", "cases", &of_case},
@@ -119,13 +119,13 @@ static WB_KEYS(verdict, "verdict", "A limit and whether it is kept.");
 
 static const struct wb_key beam_rows[] = {
     {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
-    {.of = &wb_schema_ludwik},
+    {.of = &wb_keys_ludwik},
     {"EI_N_mm2", NUMBER, "N mm2", "flexural rigidity"},
 };
 static WB_KEYS(beam, "beam", "A homogenised beam.");
 
 static const struct wb_key result_rows[] = {
-    {.of = &wb_schema_simulation_state},
+    {.of = &wb_simulation_state_keys},
     {"sha256", TEXT | OPTIONAL, "", "SHA-256 of force_deflection.csv"},
     {"tool_revision", TEXT | OPTIONAL, "", "revision of the program that computed it"},
     {"cpu_s", NUMBER | UNKNOWN | OPTIONAL, "s", "CPU time"},
@@ -221,7 +221,7 @@ static WB_KEYS(bundle_run, "report_run",
                "A run; the keys from `elements` on are of a used dataset.");
 
 static const struct wb_key wb_schema_report_bundles_rows[] = {
-    {.of = &wb_schema_report_head},
+    {.of = &wb_numbers_head_keys},
     {"limits", OBJECT | LIST, "", "limits of the campaign", &verdict},
     {"bundles", OBJECT | LIST, "", "bundles", &bundle},
     {"runs", OBJECT | LIST, "", "runs", &bundle_run},
@@ -265,7 +265,7 @@ static const struct wb_key predicted_rows[] = {
 static WB_KEYS(predicted, "predicted_bundle", "A bundle.");
 
 static const struct wb_key wb_schema_report_prediction_rows[] = {
-    {.of = &wb_schema_report_head},
+    {.of = &wb_numbers_head_keys},
     {"bundles", OBJECT | LIST, "", "bundles", &predicted},
 };
 WB_KEYS(wb_schema_report_prediction, "report_of_prediction",
@@ -293,7 +293,7 @@ static const struct wb_key group_rows[] = {
     {"label", TEXT, "", "name in the report"},
     {"outer_diameter_mm", NUMBER, "mm", "outer diameter"},
     {"zero_force_mN", NUMBER, "mN", "force that marks the first contact"},
-    {"machine", OBJECT, "", "testing machine", &wb_schema_machine},
+    {"machine", OBJECT, "", "testing machine", &wb_keys_machine},
     {"early_rigidity_Nmm2", NUMBER | UNKNOWN, "N mm2", "mean of the tests' early rigidity"},
     {"early_rigidity_deviation_Nmm2", NUMBER | UNKNOWN, "N mm2", "its standard deviation"},
     {"reach_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "deflection that all tests reach"},
@@ -337,7 +337,7 @@ static const struct wb_key cable_rows[] = {
     {"wire_count", INTEGER, "", "wires round the core"},
     {"wire_circle_radius_mm", NUMBER, "mm", "radius of the circle of their centres"},
     {"conductor_area_mm2", NUMBER, "mm2", "area of the metal in one wire"},
-    {"conductor", OBJECT, "", "law of the conductor", &wb_schema_ludwik},
+    {"conductor", OBJECT, "", "law of the conductor", &wb_keys_ludwik},
     {"layers", OBJECT | LIST, "", "layers", &layer},
 };
 static WB_KEYS(cable, "cable", "A layered cable.");
@@ -402,7 +402,7 @@ static WB_KEYS(fitted_wire, "fitted_wire",
                "The calibration of a wire on three-point bending tests.");
 
 static const struct wb_key wb_schema_report_machine_rows[] = {
-    {.of = &wb_schema_report_head},
+    {.of = &wb_numbers_head_keys},
     {"tests_wanted", INTEGER, "", "tests of the campaign"},
     {"tests_used", INTEGER, "", "tests that are used"},
     {"tests_missing", INTEGER, "", "tests whose files are missing"},

@@ -27,7 +27,7 @@ static const struct wb_key law_rows[] = {
     {"form", TEXT, "", "form of the law", .choices = "ludwik|parallel|chaboche"},
     {"isotropic_share", NUMBER, "", "share of the hardening that is isotropic"},
     {"rule", TEXT | OPTIONAL, "", "hardening rule, where it is `combined`"},
-    {.of = &wb_schema_law_numbers},
+    {.of = &wb_keys_law_numbers},
 };
 static WB_KEYS(law, "input_law", "The law of a wire.");
 
@@ -203,7 +203,7 @@ static const struct wb_key computed_law_rows[] = {
     {"hardening", TEXT | OPTIONAL, "", "hardening rule",
      .choices = "isotropic|kinematic|mixed|combined"},
     {"isotropic_share", NUMBER | OPTIONAL, "", "share of the hardening that is isotropic"},
-    {.of = &wb_schema_law_numbers},
+    {.of = &wb_keys_law_numbers},
     {"properties_source", TEXT, "", "source of the law's numbers"},
     {.of = &ended},
 };

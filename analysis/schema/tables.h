@@ -2,20 +2,8 @@
 #ifndef WB_ANALYSIS_SCHEMA_TABLES_H
 #define WB_ANALYSIS_SCHEMA_TABLES_H
 
+#include "analysis/keys/common.h"
 #include "analysis/keys/row.h"
-
-/* Laws (law_keys.c). */
-extern const struct wb_keys wb_schema_law_numbers; /* of a form, with _MPa */
-extern const struct wb_keys wb_schema_law_of_file;
-extern const struct wb_keys wb_schema_law_of_json;
-extern const struct wb_keys wb_schema_ludwik; /* E, sigma_Y, K, n */
-
-/* Of several files (common_keys.c). */
-extern const struct wb_keys wb_schema_tool;
-extern const struct wb_keys wb_schema_campaign;
-extern const struct wb_keys wb_schema_excluded;
-extern const struct wb_keys wb_schema_sum;
-extern const struct wb_keys wb_schema_machine;
 
 /* Parts of dataset.json that reports copy (align_keys.c). */
 extern const struct wb_keys wb_schema_correction;

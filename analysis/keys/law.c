@@ -1,5 +1,6 @@
 /* Keys of laws: in JSON documents, and in the block `law` of properties and wire files. */
-#include "analysis/schema/tables.h"
+#include "analysis/keys/common.h"
+#include "analysis/keys/row.h"
 
 static const struct wb_key part_rows[] = {
     {"modulus_MPa", NUMBER, "MPa", "modulus of the part"},
@@ -27,7 +28,7 @@ static const struct wb_key relaxation_rows[] = {
 };
 static WB_KEYS(relaxation, "law_relaxation", "The relaxation of a wire that relaxes.");
 
-static const struct wb_key wb_schema_law_numbers_rows[] = {
+static const struct wb_key wb_keys_law_numbers_rows[] = {
     {"relaxation", OBJECT | OPTIONAL, "", "Maxwell elements, of a wire that relaxes", &relaxation},
     {"yield_stress_MPa", NUMBER | OPTIONAL, "MPa",
      "sigma_Y of Ludwik's law; initial yield stress of Chaboche's law"},
@@ -40,7 +41,7 @@ static const struct wb_key wb_schema_law_numbers_rows[] = {
     {"rate", NUMBER | OPTIONAL, "", "b of Chaboche's law, the rate of that growth"},
     {"back_stresses", OBJECT | LIST | OPTIONAL, "", "back stresses of Chaboche's law", &back},
 };
-WB_KEYS(wb_schema_law_numbers, "law_numbers", "The numbers of a law, by its form.");
+WB_KEYS(wb_keys_law_numbers, "law_numbers", "The numbers of a law, by its form.");
 
 #define FORMS "ludwik|parallel|chaboche"
 #define RULES "isotropic|kinematic|mixed|combined"
@@ -49,24 +50,24 @@ WB_KEYS(wb_schema_law_numbers, "law_numbers", "The numbers of a law, by its form
     "combined "                                                                                    \
     "hardening a share of the hardening stress or of a part's modulus"
 
-static const struct wb_key wb_schema_law_of_json_rows[] = {
+static const struct wb_key wb_keys_law_of_json_rows[] = {
     {"form", TEXT, "", "form of the curve of the first loading", .choices = FORMS},
     {"hardening", TEXT, "", "hardening rule", .choices = RULES},
     {"isotropic_share", NUMBER, "", SHARE},
     {"youngs_modulus_MPa", NUMBER, "MPa", "Young's modulus E; of parallel parts the sum of moduli"},
     {"poissons_ratio", NUMBER, "", "Poisson's ratio"},
-    {NULL, 0, "", "", &wb_schema_law_numbers},
+    {NULL, 0, "", "", &wb_keys_law_numbers},
 };
-WB_KEYS(wb_schema_law_of_json, "law", "A law of the homogenised wire.");
+WB_KEYS(wb_keys_law_of_json, "law", "A law of the homogenised wire.");
 
-static const struct wb_key wb_schema_ludwik_rows[] = {
+static const struct wb_key wb_keys_ludwik_rows[] = {
     {"youngs_modulus_MPa", NUMBER, "MPa", "Young's modulus E, homogenised over the outer diameter"},
     {"yield_stress_MPa", NUMBER, "MPa", "yield stress sigma_Y"},
     {"strength_coefficient_MPa", NUMBER, "MPa",
      "strength coefficient K; the stress is sigma_Y + K ep^n beyond yield"},
     {"hardening_exponent", NUMBER, "", "hardening exponent n"},
 };
-WB_KEYS(wb_schema_ludwik, "ludwik", "The four numbers of Ludwik's law.");
+WB_KEYS(wb_keys_ludwik, "ludwik", "The four numbers of Ludwik's law.");
 
 /* --- in files --- */
 
@@ -93,7 +94,7 @@ static const struct wb_key file_relaxation_rows[] = {
 };
 static WB_KEYS(file_relaxation, "file_law_relaxation", "The relaxation of a wire that relaxes.");
 
-static const struct wb_key wb_schema_law_of_file_rows[] = {
+static const struct wb_key wb_keys_law_of_file_rows[] = {
     {"form", TEXT, "", "form of the curve of the first loading", .choices = FORMS},
     {"hardening", TEXT, "", "hardening rule", .choices = RULES},
     {"isotropic_share", NUMBER | OPTIONAL, "", SHARE},
@@ -103,4 +104,4 @@ static const struct wb_key wb_schema_law_of_file_rows[] = {
     {"relaxation", OBJECT | OPTIONAL, "", "Maxwell elements, of a wire that relaxes",
      &file_relaxation},
 };
-WB_KEYS(wb_schema_law_of_file, "file_law", "The law of a wire, as in a wire file.");
+WB_KEYS(wb_keys_law_of_file, "file_law", "The law of a wire, as in a wire file.");
