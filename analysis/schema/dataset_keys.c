@@ -2,6 +2,8 @@
  * (simulation_keys.c). */
 #include "analysis/schema/tables.h"
 
+#include "analysis/align/align_keys.h"
+
 static const struct wb_key test_rows[] = {
     {"wire", TEXT, "", "name of the product"},
     {"sample", INTEGER, "", "number of the piece; 0: none"},
@@ -106,7 +108,7 @@ static WB_KEYS(common, "dataset_keys", "");
 
 static const struct wb_key aligned_rows[] = {
     {.of = &common},
-    {.of = &wb_schema_aligned},
+    {.of = &wb_align_keys},
 };
 static WB_KEYS(aligned, "dataset_of_recording", "The dataset of a recording, by `align`.");
 

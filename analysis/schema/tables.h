@@ -5,14 +5,8 @@
 #include "analysis/keys/common.h"
 #include "analysis/keys/row.h"
 
-/* Parts of dataset.json that reports copy (align_keys.c). */
-extern const struct wb_keys wb_schema_correction;
-extern const struct wb_keys wb_schema_checks;
-extern const struct wb_keys wb_schema_aligned; /* keys of a dataset's root */
-
-/* Simulations (simulation_keys.c), whole cycles (cycle_keys.c). */
+/* Simulations (simulation_keys.c). */
 extern const struct wb_keys wb_schema_simulation;
-extern const struct wb_keys wb_schema_cycle;
 
 /* Roots. */
 extern const struct wb_keys wb_schema_dataset;

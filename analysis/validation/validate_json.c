@@ -2,42 +2,85 @@
 
 #include <math.h>
 
+#include "analysis/keys/row.h"
 #include "analysis/validation/validate_bounds.h"
 #include "base/units.h"
 
+#define RESULT(member) WB_AT(struct wb_validate_result, member)
+#define LOOP(member) WB_AT(struct wb_validate_loop, member)
+#define LOOPS WB_ARRAY(struct wb_validate_result, cycles.loops, cycles.n_loops)
+
+static const struct wb_key bound_rows[] = {
+    {"found", NUMBER | UNKNOWN, "", "value, in the unit of the key above"},
+    {"bound", NUMBER | UNKNOWN, "", "bound of the value; null: not known"},
+    {"exceeded", FLAG, "", "the value exceeds its bound"},
+};
+static WB_KEYS(bound, "bound", "A value of a validation and its bound.");
+
+static const struct wb_key bounds_rows[] = {
+    {"loading", OBJECT, "", "RMS error on loading over F_max", &bound},
+    {"unloading", OBJECT, "", "RMS error on unloading over F_max", &bound},
+    {"residual_deflection_mm", OBJECT, "mm", "error of the residual deflection", &bound},
+    {"shapes_mm", OBJECT, "mm", "RMS distance of the markers", &bound},
+};
+static WB_KEYS(bounds, "bounds", "Bounds of a validation.");
+
+static const struct wb_key unloading_rows[] = {
+    {"samples", RESULT(cycles.n_samples), "", "number of samples with unloading"},
+    {"rms", RESULT(cycles.rms) | UNKNOWN, "", "RMS error of the mean over F_max"},
+    {"max_error", RESULT(cycles.largest_error) | UNKNOWN, "",
+     "largest error of the mean over F_max"},
+    {"rms_of_samples", RESULT(cycles.sample_rms) | UNKNOWN, "",
+     "RMS error of the single samples over F_max"},
+    {"rule_untested", RESULT(is_rule_untested), "",
+     "the calibration had no unloading to test the hardening rule"},
+};
+static WB_KEYS(unloading, "unloading", "The prediction of the unloading.");
+
+static const struct wb_key residual_rows[] = {
+    {"measured", RESULT(cycles.residual_measured) | UNKNOWN, "mm", "measured residual deflection"},
+    {"predicted", RESULT(cycles.residual_computed) | UNKNOWN, "mm",
+     "predicted residual deflection"},
+};
+static WB_KEYS(residual, "residual_deflection",
+               "Deflection where the force has returned to that at zero deflection.");
+
+static const struct wb_key loop_rows[] = {
+    {"cycle", LOOP(cycle), "", "cycle, from 1"},
+    {"samples", LOOP(n_samples), "", "number of samples"},
+    {"measured", LOOP(measured) | UNKNOWN, "mJ", "measured energy loss of the cycle"},
+    {"predicted", LOOP(computed) | UNKNOWN, "mJ", "predicted energy loss of the cycle"},
+};
+static WB_KEYS(loop, "loop_energy", "The energy loss of a later cycle.");
+
+static const struct wb_key wb_validate_json_keys_rows[] = {
+    {"clamp_curvature_1_m", RESULT(cycles.clamp_curvature) | UNKNOWN | OPTIONAL, "1/m",
+     "computed curvature at the clamp"},
+    {"beyond_known_curvature", RESULT(is_beyond) | OPTIONAL, "",
+     "that curvature exceeds the one up to which the law was measured"},
+    {"bounds", OBJECT | OPTIONAL, "", "errors and their bounds", &bounds},
+    {"unloading", WB_HERE(struct wb_validate_result) | UNKNOWN | OPTIONAL, "",
+     "prediction of the unloading; null: no unloading was measured", &unloading},
+    {"residual_deflection_mm", WB_HERE(struct wb_validate_result) | OPTIONAL, "mm",
+     "residual deflection", &residual},
+    {"loop_energy_mJ", LOOPS | OPTIONAL, "mJ", "energy loss of the later cycles", &loop},
+};
+WB_KEYS(wb_validate_json_keys, "validation_cycles", "");
+
 void wb_validate_json_put_cycles(struct wb_json *item, const struct wb_validate_result *r)
 {
-    const struct wb_validate_cycles *const cycles = &r->cycles;
-    wb_json_set_number(item, "clamp_curvature_1_m", cycles->clamp_curvature);
-    wb_json_set_boolean(item, "beyond_known_curvature", r->is_beyond);
-    struct wb_json *const bounds = wb_json_set_object(item, "bounds");
+    WB_PUT(item, &wb_validate_json_keys, struct wb_validate_result, r);
+    struct wb_json *const parts = wb_json_set_object(item, "bounds");
     for (int i = 0; i < WB_VALIDATE_PARTS; i++) {
-        const struct wb_validate_bound *const bound = &r->bounds[i];
+        const struct wb_validate_bound *const of = &r->bounds[i];
         const double unit = wb_validate_part_unit(i);
-        struct wb_json *const part = wb_json_set_object(bounds, wb_validate_part_key(i));
-        wb_json_set_number(part, "found", bound->found / unit);
-        wb_json_set_number(part, "bound", bound->bound / unit);
-        wb_json_set_boolean(part, "exceeded", bound->is_exceeded);
+        struct wb_json *const part = wb_json_set_object(parts, wb_validate_part_key(i));
+        wb_json_set_number(part, "found", of->found / unit);
+        wb_json_set_number(part, "bound", of->bound / unit);
+        wb_json_set_boolean(part, "exceeded", of->is_exceeded);
     }
-    if (cycles->n_samples == 0) {
+    if (r->cycles.n_samples == 0)
         wb_json_set_number(item, "unloading", (double)NAN);
-        return;
-    }
-    struct wb_json *const unloading = wb_json_set_object(item, "unloading");
-    wb_json_set_integer(unloading, "samples", cycles->n_samples);
-    wb_json_set_number(unloading, "rms", cycles->rms);
-    wb_json_set_number(unloading, "max_error", cycles->largest_error);
-    wb_json_set_number(unloading, "rms_of_samples", cycles->sample_rms);
-    wb_json_set_boolean(unloading, "rule_untested", r->is_rule_untested);
-    struct wb_json *const left = wb_json_set_object(item, "residual_deflection_mm");
-    wb_json_set_number(left, "measured", cycles->residual_measured / WB_MM);
-    wb_json_set_number(left, "predicted", cycles->residual_computed / WB_MM);
-    struct wb_json *const loops = wb_json_set_array(item, "loop_energy_mJ");
-    for (int i = 0; i < cycles->n_loops; i++) {
-        struct wb_json *const loop = wb_json_append_object(loops);
-        wb_json_set_integer(loop, "cycle", cycles->loops[i].cycle);
-        wb_json_set_integer(loop, "samples", cycles->loops[i].n_samples);
-        wb_json_set_number(loop, "measured", cycles->loops[i].measured / WB_MJ);
-        wb_json_set_number(loop, "predicted", cycles->loops[i].computed / WB_MJ);
-    }
+    else
+        WB_PUT(item, &wb_validate_json_keys, struct wb_validate_result, r);
 }

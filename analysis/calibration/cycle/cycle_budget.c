@@ -5,6 +5,7 @@
 
 #include <gsl/gsl_cdf.h>
 
+#include "analysis/keys/row.h"
 #include "base/units.h"
 
 static const double coverage = 0.95;
@@ -353,15 +354,42 @@ double wb_cycle_budget_cell(const struct wb_budget *budget, enum wb_contribution
     return fabs(budget->effect[shared]) * (shared == WB_SHARED_MARKERS ? unit_distance : unit_part);
 }
 
+#define BUDGET(member) WB_AT(struct wb_budget, member)
+
+static const struct wb_key contribution_rows[] = {
+    {"of", TEXT, "",
+     "source of the uncertainty: `specimens`, `fits`, `law`, or what all specimens share"},
+    {"standard_uncertainty", NUMBER | UNKNOWN, "", "of the logarithm of the quantity"},
+    {"degrees_of_freedom", NUMBER | UNKNOWN, "", "degrees of freedom; null: infinite"},
+    {"sensitivity", NUMBER | UNKNOWN | OPTIONAL, "",
+     "change of the logarithm by a relative change of what all specimens share"},
+    {"sensitivity_1_mm", NUMBER | UNKNOWN | OPTIONAL, "1/mm",
+     "change of the logarithm by a change of the marker offset"},
+};
+static WB_KEYS(contribution, "contribution", "A contribution to the uncertainty of a quantity.");
+
+static const struct wb_key wb_cycle_budget_keys_rows[] = {
+    {"quantity", TEXT, "", "the quantity",
+     .choices = "flexural_rigidity|residual_curvature_ratio|loop_energy|"
+                "deflection_springback|moment|secant_stiffness|"
+                "unloading_stiffness"},
+    {"curvature_1_m", NUMBER | UNKNOWN, "1/m", "curvature; null: the quantity has none"},
+    {"standard_uncertainty", BUDGET(combined) | UNKNOWN, "",
+     "combined standard uncertainty of the logarithm of the quantity"},
+    {"degrees_of_freedom", BUDGET(effective_degrees) | UNKNOWN, "",
+     "effective degrees of freedom; null: infinite"},
+    {"coverage_factor", BUDGET(factor) | UNKNOWN, "", "coverage factor for 95 %"},
+    {"contributions", OBJECT | LIST, "", "contributions", &contribution},
+};
+WB_KEYS(wb_cycle_budget_keys, "budget", "The uncertainty budget of a quantity.");
+
 static void put_budget(struct wb_json *array, const char *quantity, double curvature,
                        const struct wb_budget *budget)
 {
     struct wb_json *const object = wb_json_append_object(array);
     wb_json_set_text(object, "quantity", quantity);
     wb_json_set_number(object, "curvature_1_m", curvature);
-    wb_json_set_number(object, "standard_uncertainty", budget->combined);
-    wb_json_set_number(object, "degrees_of_freedom", budget->effective_degrees);
-    wb_json_set_number(object, "coverage_factor", budget->factor);
+    WB_PUT(object, &wb_cycle_budget_keys, struct wb_budget, budget);
     struct wb_json *const items = wb_json_set_array(object, "contributions");
     for (int i = 0; i < WB_CONTRIBUTIONS; i++) {
         struct wb_json *const item = wb_json_append_object(items);

@@ -9,6 +9,7 @@
 #define WB_ANALYSIS_CALIBRATION_CYCLE_CYCLE_BUDGET_H
 
 #include "analysis/calibration/cycle/cycle_calibrate.h"
+#include "analysis/keys/keys.h"
 #include "base/json.h"
 
 /* Results whose budgets are printed: the moment at a tenth of the largest curvature and at the
@@ -44,6 +45,9 @@ void wb_cycle_budget_row(const struct wb_cycle_calibration *calibration, enum wb
  * the value is the effect of 1 %, of the markers of 0.1 mm. NaN: unknown. */
 double wb_cycle_budget_cell(const struct wb_budget *budget, enum wb_contribution row,
                             bool *is_stated);
+
+/* Keys of an item of `budget`. */
+extern const struct wb_keys wb_cycle_budget_keys;
 
 /* Appends an object for each result to an array. */
 void wb_cycle_budget_put(struct wb_json *array, const struct wb_cycle_calibration *calibration);

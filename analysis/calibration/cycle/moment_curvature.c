@@ -32,6 +32,7 @@
 #include "analysis/calibration/cycle/cycle_bow.h"
 #include "analysis/calibration/cycle/cycle_data.h"
 #include "analysis/calibration/law/bending.h"
+#include "analysis/keys/row.h"
 #include "base/memory.h"
 #include "base/units.h"
 
@@ -620,16 +621,22 @@ enum wb_status wb_moment_curvature_compare(const struct wb_moment_cloud *const *
     return WB_OK;
 }
 
+#define POINT(member) WB_AT(struct wb_moment_point, member)
+
+static const struct wb_key wb_moment_curvature_keys_rows[] = {
+    {"curvature_1_m", POINT(curvature), "1/m", "curvature by the markers"},
+    {"curvature_deviation_1_m", POINT(deviation), "1/m", "standard uncertainty of the curvature"},
+    {"moment_N_mm", POINT(moment), "N mm", "moment by the strand's tension"},
+    {"branch", WB_CHOICE(struct wb_moment_point, is_unloading), "", "branch of the cycle",
+     .choices = "loading|unloading"},
+    {"s_mm", POINT(s), "mm", "arc length of the place"},
+    {"band", POINT(is_band), "", "the wire is bent too little there: the point shows scatter only"},
+};
+WB_KEYS(wb_moment_curvature_keys, "moment_point", "A point of M over curvature, without a law.");
+
 void wb_moment_curvature_put(struct wb_json *array, const struct wb_moment_cloud *cloud)
 {
-    for (int i = 0; i < cloud->n; i++) {
-        const struct wb_moment_point *const point = &cloud->points[i];
-        struct wb_json *const item = wb_json_append_object(array);
-        wb_json_set_number(item, "curvature_1_m", point->curvature);
-        wb_json_set_number(item, "curvature_deviation_1_m", point->deviation);
-        wb_json_set_number(item, "moment_N_mm", point->moment / WB_NMM);
-        wb_json_set_text(item, "branch", point->is_unloading ? "unloading" : "loading");
-        wb_json_set_number(item, "s_mm", point->s / WB_MM);
-        wb_json_set_boolean(item, "band", point->is_band);
-    }
+    for (int i = 0; i < cloud->n; i++)
+        WB_PUT(wb_json_append_object(array), &wb_moment_curvature_keys, struct wb_moment_point,
+               &cloud->points[i]);
 }

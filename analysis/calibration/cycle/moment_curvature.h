@@ -15,6 +15,7 @@
 
 #include "analysis/calibration/cycle/cycle_model.h"
 #include "analysis/dataset/dataset.h"
+#include "analysis/keys/keys.h"
 #include "base/json.h"
 #include "base/reason.h"
 #include "base/status.h"
@@ -75,6 +76,9 @@ WB_MUST_CHECK enum wb_status
 wb_moment_curvature_compare(const struct wb_moment_cloud *const *clouds, int n,
                             const struct wb_law *law, double diameter,
                             struct wb_moment_comparison *comparison);
+
+/* Keys of a point. */
+extern const struct wb_keys wb_moment_curvature_keys;
 
 /* Appends each point to a JSON array: {curvature_1_m, curvature_deviation_1_m, moment_N_mm,
  * branch, s_mm, band}. */

@@ -7,6 +7,7 @@
 
 #include "analysis/calibration/law/bending.h"
 #include "analysis/calibration/properties/cycle_json.h"
+#include "analysis/keys/row.h"
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/units.h"
@@ -168,42 +169,74 @@ bool wb_recordings_cycle_is_refuted(const struct wb_recordings_cycle *cycle)
     return cycle->calibration.has_unloading && !cycle->calibration.is_followed;
 }
 
-static void put_later(struct wb_json *object, const struct wb_cycle_later *later)
-{
-    wb_json_set_integer(object, "sample", later->sample);
-    wb_json_set_integer(object, "cycles", later->n_cycles);
-    wb_json_set_number(object, "rms_over_F_max", later->rms);
-    wb_json_set_number(object, "measured_energy_mJ", later->measured_energy / WB_MJ);
-    wb_json_set_number(object, "computed_energy_mJ", later->computed_energy / WB_MJ);
-}
+#define LATER(member) WB_AT(struct wb_cycle_later, member)
+#define VALLEY(member) WB_AT(struct wb_cycle_valley, member)
 
-static void put_valley(struct wb_json *object, const struct wb_cycle_valley *valley)
-{
-    wb_json_set_number(object, "strength_coefficient_MPa",
-                       valley->best.strength_coefficient / WB_MPA);
-    wb_json_set_number(object, "hardening_exponent", valley->best.hardening_exponent);
-    wb_json_set_number(object, "misfit", valley->best_misfit);
-    wb_json_set_number(object, "limit", valley->limit);
-    wb_json_set_number(object, "strength_coefficient_low_MPa", valley->strength_low / WB_MPA);
-    wb_json_set_number(object, "strength_coefficient_high_MPa", valley->strength_high / WB_MPA);
-    wb_json_set_number(object, "hardening_exponent_low", valley->exponent_low);
-    wb_json_set_number(object, "hardening_exponent_high", valley->exponent_high);
-}
+static const struct wb_key cloud_rows[] = {
+    {"sample", INTEGER, "", "number of the piece"},
+    {"points", OBJECT | LIST, "", "points", &wb_moment_curvature_keys},
+};
+static WB_KEYS(cloud, "moment_points", "The points of a sample.");
+
+static const struct wb_key later_rows[] = {
+    {"sample", LATER(sample), "", "number of the piece"},
+    {"cycles", LATER(n_cycles), "", "number of cycles"},
+    {"rms_over_F_max", LATER(rms) | UNKNOWN, "", "RMS error of the later cycles over F_max"},
+    {"measured_energy_mJ", LATER(measured_energy) | UNKNOWN, "mJ",
+     "measured energy loss of the last cycle"},
+    {"computed_energy_mJ", LATER(computed_energy) | UNKNOWN, "mJ",
+     "computed energy loss of the last cycle"},
+};
+static WB_KEYS(later, "later_cycles", "Later cycles, which the law was not fitted to.");
+
+static const struct wb_key remark_rows[] = {
+    {"severity", TEXT, "", "severity", .choices = "note|doubt"},
+    {"sample", NUMBER | UNKNOWN, "", "number of the piece; null: all"},
+    {"text", TEXT, "", "the remark"},
+};
+static WB_KEYS(remark, "cycle_remark", "A remark on the calibration.");
+
+static const struct wb_key valley_rows[] = {
+    {"strength_coefficient_MPa", VALLEY(best.strength_coefficient) | UNKNOWN, "MPa",
+     "K of the best fit"},
+    {"hardening_exponent", VALLEY(best.hardening_exponent) | UNKNOWN, "", "n of the best fit"},
+    {"misfit", VALLEY(best_misfit) | UNKNOWN, "", "misfit of the best fit"},
+    {"limit", VALLEY(limit) | UNKNOWN, "",
+     "misfit up to which an F-test (95 %) sees no difference"},
+    {"strength_coefficient_low_MPa", VALLEY(strength_low) | UNKNOWN, "MPa",
+     "least K within that limit"},
+    {"strength_coefficient_high_MPa", VALLEY(strength_high) | UNKNOWN, "MPa",
+     "largest K within that limit"},
+    {"hardening_exponent_low", VALLEY(exponent_low) | UNKNOWN, "", "least n within that limit"},
+    {"hardening_exponent_high", VALLEY(exponent_high) | UNKNOWN, "", "largest n within that limit"},
+};
+static WB_KEYS(valley, "ludwik_on_loading", "K and n of the first loading of the first sample.");
+
+static const struct wb_key wb_recordings_cycle_keys_rows[] = {
+    {.of = &wb_cycle_json_keys},
+    {"moment_curvature_measured", OBJECT | LIST, "", "M over curvature without a law", &cloud},
+    {"later_cycles", OBJECT | OPTIONAL, "", "later cycles", &later},
+    {"remarks", OBJECT | LIST, "", "remarks on the calibration", &remark},
+    {"ludwik_on_loading_alone", OBJECT | OPTIONAL, "", "K and n of a first loading alone", &valley},
+};
+WB_KEYS(wb_recordings_cycle_keys, "report_cycle_keys", "");
 
 void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_cycle *cycle)
 {
     wb_cycle_json_put(object, &cycle->calibration);
     struct wb_json *const clouds = wb_json_set_array(object, "moment_curvature_measured");
     for (int i = 0; i < cycle->calibration.n_members; i++) {
-        struct wb_json *const cloud = wb_json_append_object(clouds);
-        wb_json_set_integer(cloud, "sample", cycle->calibration.members[i].sample);
-        wb_moment_curvature_put(wb_json_set_array(cloud, "points"), &cycle->clouds[i]);
+        struct wb_json *const item = wb_json_append_object(clouds);
+        wb_json_set_integer(item, "sample", cycle->calibration.members[i].sample);
+        wb_moment_curvature_put(wb_json_set_array(item, "points"), &cycle->clouds[i]);
     }
     if (cycle->later.n > 0)
-        put_later(wb_json_set_object(object, "later_cycles"), &cycle->later);
+        WB_PUT(wb_json_set_object(object, "later_cycles"), &later, struct wb_cycle_later,
+               &cycle->later);
     wb_cycle_check_put(wb_json_set_array(object, "remarks"), &cycle->remarks);
     if (cycle->has_valley)
-        put_valley(wb_json_set_object(object, "ludwik_on_loading_alone"), &cycle->valley);
+        WB_PUT(wb_json_set_object(object, "ludwik_on_loading_alone"), &valley,
+               struct wb_cycle_valley, &cycle->valley);
 }
 
 /* --- pooled over wires --- */

@@ -15,6 +15,7 @@
 #include "analysis/calibration/cycle/cycle_valley.h"
 #include "analysis/calibration/cycle/moment_curvature.h"
 #include "analysis/dataset/dataset.h"
+#include "analysis/keys/keys.h"
 #include "base/json.h"
 #include "base/reason.h"
 #include "base/status.h"
@@ -53,6 +54,9 @@ void wb_recordings_cycle_release(struct wb_recordings_cycle *cycle);
 
 /* Whether no law fits loading and unloading. */
 bool wb_recordings_cycle_is_refuted(const struct wb_recordings_cycle *cycle);
+
+/* Keys of a calibration that is done. */
+extern const struct wb_keys wb_recordings_cycle_keys;
 
 /* All numbers into an object of report.json. */
 void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_cycle *cycle);

@@ -4,10 +4,251 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/align/align_keys.h"
+#include "analysis/keys/common.h"
+#include "analysis/keys/row.h"
 #include "analysis/report/bench/recordings_draw.h"
 #include "analysis/report/numbers.h"
 #include "analysis/validation/validate_json.h"
 #include "base/units.h"
+
+/* --- keys --- */
+
+#define TEST(member) WB_AT(struct wb_recordings_results_test, member)
+#define WIRE(member) WB_AT(struct wb_recordings_wire, member)
+#define CURVE_LIST(member) WB_POINTER(struct wb_curve, member, n)
+#define PREDICTION(member) WB_AT(struct wb_prediction, member)
+#define RESULT(member) WB_AT(struct wb_validate_result, member)
+#define FITTED(member) WB_AT(struct wb_calibrate_result, member)
+
+static const struct wb_key settings_rows[] = {
+    {.settings = &wb_calibrate_table,
+     .applies = WB_CALIBRATE_REPORT,
+     WB_HERE(struct wb_calibrate_settings)},
+};
+static WB_KEYS(settings, "report_settings", "Settings of the calibration.");
+
+static const struct wb_key limits_rows[] = {
+    {"calibration_rms_max", NUMBER | OPTIONAL, "", "limit of the RMS of calibrations over F_max"},
+    {"validation_rms_max", NUMBER | OPTIONAL, "", "limit of the RMS of validations over F_max"},
+};
+static WB_KEYS(limits, "report_limits", "Limits of the campaign.");
+
+static const struct wb_key recording_rows[] = {
+    {"name", WB_AT(struct wb_recordings_test, name), "", "name of the recording"},
+    {"wire", TEXT, "", "name of the product"},
+    {"purpose", TEXT, "", "use of the recording", .choices = "calibration|validation"},
+    {"used", TEST(usable), "", "the recording is used"},
+    {"seed", INTEGER | OPTIONAL, "", "seed of the virtual rig"},
+    {"sha256", TEXT | OPTIONAL, "", "SHA-256 of the uncompressed recording"},
+    {"excluded", OBJECT | OPTIONAL, "", "exclusion of the test", &wb_keys_excluded},
+    {"problem", TEXT | OPTIONAL, "", "why the recording is not used"},
+    {"sample", TEST(dataset.info.sample) | OPTIONAL, "", "number of the piece"},
+    {"length_mm", TEST(dataset.info.length) | OPTIONAL, "mm", "free length"},
+    {"virtual_rig", TEST(is_virtual) | OPTIONAL, "", "the data come from a virtual rig"},
+    {"start_utc", TEST(start_utc) | OPTIONAL, "", "start of the test"},
+    {"tool_revision", TEST(tool_revision) | OPTIONAL, "", "revision of the program that recorded"},
+    {"operator", TEST(operator_name) | OPTIONAL, "", "operator"},
+    {"bow_mm", NUMBER | OPTIONAL, "mm", "natural offset of the tip"},
+    {"corrections", OBJECT | LIST | OPTIONAL, "", "as in dataset.json", &wb_align_keys_correction},
+    {"checks", OBJECT | OPTIONAL, "", "as in dataset.json", &wb_align_keys_checks},
+    {"warnings", TEXT | LIST | OPTIONAL, "", "as in dataset.json"},
+};
+static WB_KEYS(recording, "report_recording",
+               "A recording; the keys from `sample` on are of a used one.");
+
+static const struct wb_key published_rows[] = {
+    {.of = &wb_keys_ludwik},
+    {"source", WIRE(reference_source), "", "source of the values"},
+};
+static WB_KEYS(published, "published", "Published properties of a wire.");
+
+static const struct wb_key measured_rows[] = {
+    {"deflection_mm", NUMBER | LIST, "mm", "deflections of the curves"},
+    {"force_mN", CURVE_LIST(force) | UNKNOWN, "mN", "mean force of the samples"},
+    {"lowest_mN", CURVE_LIST(low) | UNKNOWN, "mN", "lowest force of the samples"},
+    {"highest_mN", CURVE_LIST(high) | UNKNOWN, "mN", "highest force of the samples"},
+    {"standard_deviation_mN", CURVE_LIST(deviation) | UNKNOWN, "mN",
+     "standard deviation of the force between samples"},
+};
+static WB_KEYS(measured, "measured_curve", "The mean curve of the samples.");
+
+static const struct wb_key computed_rows[] = {
+    {"rms_over_F_max", PREDICTION(rms) | UNKNOWN, "", "RMS error over F_max"},
+    {"rms_from_5mm_over_F_max", PREDICTION(rms_from_5mm) | UNKNOWN, "",
+     "the same of deflections from 5 mm on"},
+    {"largest_error_over_F_max", PREDICTION(max_error) | UNKNOWN, "", "largest error over F_max"},
+    {"points_reached", PREDICTION(n_reached), "", "deflections that the computation reached"},
+    {"force_mN", WB_POINTER(struct wb_prediction, force, n) | UNKNOWN, "mN", "computed force"},
+    {"error_over_F_max", WB_POINTER(struct wb_prediction, error, n) | UNKNOWN, "",
+     "error of the force over F_max"},
+};
+static WB_KEYS(computed, "computed_curve", "A computed curve.");
+
+static const struct wb_key comparison_rows[] = {
+    {"samples", RESULT(curve.n_samples) | OPTIONAL, "", "number of samples"},
+    {"length_mm", RESULT(info.length) | OPTIONAL, "mm", "free length"},
+    {"F_max_mN", RESULT(curve.max_force) | OPTIONAL, "mN",
+     "F_max, the largest force of the mean curve"},
+    {"max_deflection_mm", RESULT(curve.max_deflection) | OPTIONAL, "mm",
+     "largest deflection of the mean curve"},
+    {"scatter_rms_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
+     "scatter between samples over F_max; null with one sample"},
+    {"residual_scatter_rms_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
+     "part of the scatter that remains with the natural shape of each sample"},
+    {"shape_rms_mm", RESULT(shape_rms) | UNKNOWN | OPTIONAL, "mm",
+     "RMS distance of the markers from the computed wire"},
+    {"shape_largest_mm", RESULT(shape_max) | UNKNOWN | OPTIONAL, "mm", "largest such distance"},
+    {"shape_points", RESULT(n_shape_points) | OPTIONAL, "", "number of markers' places compared"},
+    {"mean_bow_mm", NUMBER | OPTIONAL, "mm", "mean natural offset of the tip"},
+    {"measured", OBJECT | OPTIONAL, "", "mean curve of the samples", &measured},
+    {"elastoplastic", RESULT(elastoplastic) | OPTIONAL, "", "curve of the elastoplastic wire",
+     &computed},
+    {"linear_elastic", RESULT(elastic) | OPTIONAL, "", "curve of the linear elastic wire",
+     &computed},
+};
+static WB_KEYS(comparison, "comparison_keys", "");
+
+static const struct wb_key state_keys_rows[] = {
+    {"state", TEXT, "", "whether there is a result", .choices = "not wanted|missing|failed|done"},
+    {"problem", TEXT | OPTIONAL, "", "why it is missing or failed"},
+};
+static WB_KEYS(state_keys, "state_keys", "");
+
+static const struct wb_key verdict_rows[] = {
+    {"rms_uncertainty_95_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
+     "in reports of a laboratory: expanded uncertainty (95 %) of the RMS"},
+    {"limit_kept", FLAG | OPTIONAL, "", "in reports of a laboratory: the limit is kept"},
+};
+static WB_KEYS(verdict, "laboratory_verdict", "");
+
+static const struct wb_key uncertainties_rows[] = {
+    {"youngs_modulus_MPa", FITTED(deviation[0]) | UNKNOWN, "MPa", "of E"},
+    {"yield_stress_MPa", FITTED(deviation[1]) | UNKNOWN, "MPa", "of sigma_Y"},
+    {"strength_coefficient_factor", NUMBER | UNKNOWN, "",
+     "K lies between K divided by this factor and K times this factor"},
+    {"hardening_exponent", FITTED(deviation[3]) | UNKNOWN, "", "of n"},
+};
+static WB_KEYS(uncertainties, "standard_uncertainties",
+               "Standard uncertainties from the scatter between samples.");
+
+static const struct wb_key search_rows[] = {
+    {"first_strength_coefficient_MPa", FITTED(first_strength_coefficient), "MPa",
+     "initial guess of K"},
+    {"first_hardening_exponent", FITTED(first_hardening_exponent), "", "initial guess of n"},
+    {"stopped_because", TEXT, "", "why the search ended"},
+    {"restarted", FITTED(restarted), "", "the search was started again from the optimum"},
+    {"restart_moved", FITTED(restart_moved) | UNKNOWN, "",
+     "largest relative change of K or n by the restart"},
+    {"beam_runs", FITTED(evaluations), "", "computations of the beam"},
+    {"beam_runs_not_converged", FITTED(failed_evaluations), "",
+     "computations that did not converge"},
+    {"strength_coefficient_MPa", NUMBER | LIST, "MPa", "K of each iteration"},
+    {"hardening_exponent", NUMBER | LIST, "", "n of each iteration"},
+    {"error_over_F_max", NUMBER | LIST | UNKNOWN, "", "error of each iteration"},
+    {"simplex_size", NUMBER | LIST | UNKNOWN, "", "size of the simplex in each iteration"},
+};
+static WB_KEYS(search, "search", "The search for K and n.");
+
+static const struct wb_key calibration_rows[] = {
+    {.of = &state_keys},
+    {"properties", OBJECT | OPTIONAL, "", "E, sigma_Y, K and n", &wb_keys_ludwik},
+    {"standard_uncertainties", OBJECT | OPTIONAL, "", "their standard uncertainties",
+     &uncertainties},
+    {"bow_corrected", FITTED(bow_corrected) | OPTIONAL, "",
+     "E and sigma_Y were corrected for the samples' bows"},
+    {"remarks", TEXT | LIST | OPTIONAL, "", "remarks on the properties"},
+    {"rms_over_F_max", FITTED(rms) | OPTIONAL, "", "RMS error of the fit over F_max"},
+    {"largest_error_over_F_max", FITTED(max_error) | OPTIONAL, "",
+     "largest error of the fit over F_max"},
+    {.of = &comparison},
+    {"search", OBJECT | OPTIONAL, "", "search for K and n", &search},
+    {.of = &verdict},
+};
+static WB_KEYS(calibration, "report_calibration",
+               "The calibration of a wire; all keys are present where it is done.");
+
+static const struct wb_key expected_rows[] = {
+    {"rms_of_perfect_model_over_F_max", RESULT(expected_rms) | UNKNOWN | OPTIONAL, "",
+     "RMS error expected from specimen scatter alone"},
+    {"rms_of_perfect_model_95_over_F_max", RESULT(expected_rms_95) | UNKNOWN | OPTIONAL, "",
+     "RMS error that specimen scatter alone exceeds in one of twenty validations"},
+    {"share_explained_by_scatter", RESULT(scatter_share) | UNKNOWN | OPTIONAL, "",
+     "square of the expected RMS over that of the RMS found, at most 1"},
+};
+static WB_KEYS(expected, "expected_keys", "");
+
+static const struct wb_key validation_rows[] = {
+    {.of = &state_keys}, {.of = &comparison}, {.of = &expected}, {.of = &wb_validate_json_keys},
+    {.of = &verdict},
+};
+static WB_KEYS(validation, "report_validation",
+               "The validation of a wire; keys from `samples` on are present if done.");
+
+static const struct wb_key pooled_rows[] = {
+    {"low", NUMBER | UNKNOWN, "N mm2", "lower end of the 95 % confidence interval"},
+    {"high", NUMBER | UNKNOWN, "N mm2", "upper end of that interval"},
+    {"deviation_of_logarithm", WB_AT(struct wb_recordings_cycle_pool, deviation) | UNKNOWN, "",
+     "pooled standard deviation of ln EI"},
+    {"degrees_of_freedom", WB_AT(struct wb_recordings_cycle_pool, degrees), "",
+     "its degrees of freedom"},
+};
+static WB_KEYS(pooled, "pooled_interval",
+               "The interval of EI with the scatter of all wires' samples.");
+
+/* Of a cycle that is done, or not. */
+static const struct wb_key prediction_rows[] = {
+    {"prediction", OBJECT | OPTIONAL, "", "validation of this law", &validation},
+};
+static WB_KEYS(prediction, "prediction_key", "");
+
+static const struct wb_key cycle_done_rows[] = {
+    {"state", TEXT, "", "the calibration is done", .choices = "done"},
+    {.of = &wb_recordings_cycle_keys},
+    {"flexural_rigidity_N_mm2_pooled_over_wires", OBJECT | OPTIONAL, "N mm2",
+     "EI with the scatter of all wires' samples", &pooled},
+    {.of = &prediction},
+};
+static WB_KEYS(cycle_done, "report_cycle", "The calibration on whole cycles.");
+
+static const struct wb_key cycle_failed_rows[] = {
+    {"state", TEXT, "", "why there is no calibration", .choices = "missing|failed"},
+    {"problem", TEXT, "", "why it is missing or failed"},
+    {.of = &prediction},
+};
+static WB_KEYS(cycle_failed, "report_cycle_missing",
+               "A calibration on whole cycles that is not there.");
+
+static const struct wb_keys *const cycles[] = {&cycle_done, &cycle_failed, NULL};
+static const struct wb_keys cycle = {"cycle", "The calibration on whole cycles, or why not.",
+                                     .alternatives = cycles};
+
+static const struct wb_key wire_keys_rows[] = {
+    {"wire", WIRE(product.name), "", "name of the product"},
+    {"label", WIRE(label), "", "name in the report"},
+    {"conductor_diameter_mm", WIRE(product.conductor_diameter), "mm",
+     "diameter of the conductor; 0: no single one"},
+    {"outer_diameter_mm", WIRE(product.outer_diameter), "mm", "outer diameter"},
+    {"density_g_cm3", WIRE(product.density), "g/cm3", "mean density over the outer diameter"},
+    {"published", OBJECT | OPTIONAL, "", "published properties", &published},
+    {"calibration", OBJECT, "", "calibration by the paper's route", &calibration},
+    {"validation", OBJECT, "", "validation of that calibration", &validation},
+    {"cycle", OBJECT | OPTIONAL, "", "calibration on whole cycles", &cycle},
+};
+static WB_KEYS(wire_keys, "report_wire", "A wire of a campaign of recordings.");
+
+static const struct wb_key wb_recordings_json_keys_rows[] = {
+    {.of = &wb_numbers_head_keys},
+    {"virtual_rig", WB_AT(struct wb_recordings_results, any_virtual), "",
+     "a recording that is used comes from a virtual rig"},
+    {"settings", OBJECT, "", "settings of the calibration", &settings},
+    {"limits", OBJECT, "", "limits of the campaign", &limits},
+    {"recordings", OBJECT | LIST, "", "recordings of the campaign", &recording},
+    {"wires", OBJECT | LIST, "", "wires of the campaign", &wire_keys},
+};
+WB_KEYS(wb_recordings_json_keys, "report_of_recordings", "The report of a campaign of recordings.");
+
+/* --- values --- */
 
 static const char *state_text(enum wb_recordings_results_state state)
 {
@@ -18,17 +259,13 @@ static const char *state_text(enum wb_recordings_results_state state)
 static void put_settings(struct wb_json *root, const struct wb_recordings *campaign)
 {
     const struct wb_calibrate_settings meant = wb_calibrate_settings_meant(&campaign->head.fit);
-    struct wb_json *const settings = wb_json_set_object(root, "settings");
-    for (size_t i = 0; i < wb_calibrate_table.n; i++) {
-        const struct wb_setting *const row = &wb_calibrate_table.rows[i];
-        if (wb_setting_applies(row, WB_CALIBRATE_REPORT))
-            wb_setting_set_json(row, &meant, settings);
-    }
-    struct wb_json *const limits = wb_json_set_object(root, "limits");
+    struct wb_json *const of = wb_json_set_object(root, "settings");
+    WB_PUT(of, &settings, struct wb_calibrate_settings, &meant);
+    struct wb_json *const largest = wb_json_set_object(root, "limits");
     if (campaign->limit[WB_RECORDINGS_CALIBRATION] > 0.0)
-        wb_json_set_number(limits, "calibration_rms_max", campaign->limit[0]);
+        wb_json_set_number(largest, "calibration_rms_max", campaign->limit[0]);
     if (campaign->limit[WB_RECORDINGS_VALIDATION] > 0.0)
-        wb_json_set_number(limits, "validation_rms_max", campaign->limit[1]);
+        wb_json_set_number(largest, "validation_rms_max", campaign->limit[1]);
 }
 
 static void put_test(struct wb_json *list, const struct wb_recordings_results_wire *wire,
@@ -36,10 +273,10 @@ static void put_test(struct wb_json *list, const struct wb_recordings_results_wi
                      enum wb_recordings_purpose purpose)
 {
     struct wb_json *const entry = wb_json_append_object(list);
-    wb_json_set_text(entry, "name", test->wanted->name);
+    WB_PUT(entry, &recording, struct wb_recordings_test, test->wanted);
     wb_json_set_text(entry, "wire", wire->wanted->product.name);
     wb_json_set_text(entry, "purpose", wb_recordings_purposes[purpose]);
-    wb_json_set_boolean(entry, "used", test->usable);
+    WB_PUT(entry, &recording, struct wb_recordings_results_test, test);
     if (test->wanted->seed >= 0)
         wb_json_set_integer(entry, "seed", test->wanted->seed);
     const char *const sha256 = test->sha256[0] ? test->sha256 : test->wanted->sha256;
@@ -53,14 +290,8 @@ static void put_test(struct wb_json *list, const struct wb_recordings_results_wi
         wb_json_set_text(entry, "problem", wb_text_string(&test->problem));
         return;
     }
-    const struct wb_test_info *const info = &test->dataset.info;
-    wb_json_set_integer(entry, "sample", info->sample);
-    wb_json_set_number(entry, "length_mm", info->length / WB_MM);
-    wb_json_set_boolean(entry, "virtual_rig", test->is_virtual);
-    wb_json_set_text(entry, "start_utc", test->start_utc);
-    wb_json_set_text(entry, "tool_revision", test->tool_revision);
-    wb_json_set_text(entry, "operator", test->operator_name);
-    wb_json_set_number(entry, "bow_mm", wb_dataset_bow(info) / WB_MM);
+    WB_PUT(entry, &recording, struct wb_recordings_results_test, test);
+    wb_json_set_number(entry, "bow_mm", wb_dataset_bow(&test->dataset.info) / WB_MM);
     static const char *const parts[] = {"corrections", "checks", "warnings"};
     for (int k = 0; k < 3; k++) {
         const struct wb_json *const part = wb_json_get(test->dataset.document, parts[k]);
@@ -69,64 +300,40 @@ static void put_test(struct wb_json *list, const struct wb_recordings_results_wi
     }
 }
 
-static void put_prediction(struct wb_json *object, const char *key,
-                           const struct wb_prediction *prediction)
-{
-    struct wb_json *const entry = wb_json_set_object(object, key);
-    wb_json_set_number(entry, "rms_over_F_max", prediction->rms);
-    wb_json_set_number(entry, "rms_from_5mm_over_F_max", prediction->rms_from_5mm);
-    wb_json_set_number(entry, "largest_error_over_F_max", prediction->max_error);
-    wb_json_set_integer(entry, "points_reached", prediction->n_reached);
-    wb_numbers_put_list(entry, "force_mN", prediction->force, prediction->n, WB_MN);
-    wb_numbers_put_list(entry, "error_over_F_max", prediction->error, prediction->n, 1.0);
-}
-
 static void put_comparison(struct wb_json *object, const struct wb_validate_result *result,
                            double scatter, double residual)
 {
     const struct wb_curve *const curve = &result->curve;
-    wb_json_set_integer(object, "samples", curve->n_samples);
-    wb_json_set_number(object, "length_mm", result->info.length / WB_MM);
-    wb_json_set_number(object, "F_max_mN", curve->max_force / WB_MN);
-    wb_json_set_number(object, "max_deflection_mm", curve->max_deflection / WB_MM);
+    WB_PUT(object, &comparison, struct wb_validate_result, result);
     wb_json_set_number(object, "scatter_rms_over_F_max",
                        curve->n_samples > 1 ? scatter : (double)NAN);
     wb_json_set_number(object, "residual_scatter_rms_over_F_max",
                        curve->n_samples > 1 ? residual : (double)NAN);
-    wb_json_set_number(object, "shape_rms_mm", result->shape_rms / WB_MM);
-    wb_json_set_number(object, "shape_largest_mm", result->shape_max / WB_MM);
-    wb_json_set_integer(object, "shape_points", result->n_shape_points);
+    WB_PUT(object, &comparison, struct wb_validate_result, result);
     wb_json_set_number(object, "mean_bow_mm", wb_dataset_bow(&result->info) / WB_MM);
-    struct wb_json *const measured = wb_json_set_object(object, "measured");
-    struct wb_json *const deflection = wb_json_set_array(measured, "deflection_mm");
+    struct wb_json *const mean = wb_json_set_object(object, "measured");
+    struct wb_json *const deflection = wb_json_set_array(mean, "deflection_mm");
     for (int i = 0; i < curve->n; i++)
         wb_json_append_number(deflection, i * curve->step / WB_MM);
-    wb_numbers_put_list(measured, "force_mN", curve->force, curve->n, WB_MN);
-    wb_numbers_put_list(measured, "lowest_mN", curve->low, curve->n, WB_MN);
-    wb_numbers_put_list(measured, "highest_mN", curve->high, curve->n, WB_MN);
-    wb_numbers_put_list(measured, "standard_deviation_mN", curve->deviation, curve->n, WB_MN);
-    put_prediction(object, "elastoplastic", &result->elastoplastic);
-    put_prediction(object, "linear_elastic", &result->elastic);
+    WB_PUT(mean, &measured, struct wb_curve, curve);
+    WB_PUT(object, &comparison, struct wb_validate_result, result);
 }
 
-static void put_validation(struct wb_json *object, const struct wb_validate_result *validation)
+static void put_validation(struct wb_json *object, const struct wb_validate_result *result)
 {
-    put_comparison(object, validation, validation->scatter_rms, validation->residual_scatter_rms);
-    wb_json_set_number(object, "rms_of_perfect_model_over_F_max", validation->expected_rms);
-    wb_json_set_number(object, "rms_of_perfect_model_95_over_F_max", validation->expected_rms_95);
-    wb_json_set_number(object, "share_explained_by_scatter", validation->scatter_share);
-    wb_validate_json_put_cycles(object, validation);
+    put_comparison(object, result, result->scatter_rms, result->residual_scatter_rms);
+    WB_PUT(object, &expected, struct wb_validate_result, result);
+    wb_validate_json_put_cycles(object, result);
 }
 
 static void put_uncertainties(struct wb_json *object, const struct wb_calibrate_result *result)
 {
     const char *remarks[WB_CALIBRATE_MOST_REMARKS];
     struct wb_json *const entry = wb_json_set_object(object, "standard_uncertainties");
-    wb_json_set_number(entry, "youngs_modulus_MPa", result->deviation[0] / WB_MPA);
-    wb_json_set_number(entry, "yield_stress_MPa", result->deviation[1] / WB_MPA);
+    WB_PUT(entry, &uncertainties, struct wb_calibrate_result, result);
     wb_json_set_number(entry, "strength_coefficient_factor", exp(result->deviation[2]));
-    wb_json_set_number(entry, "hardening_exponent", result->deviation[3]);
-    wb_json_set_boolean(object, "bow_corrected", result->bow_corrected);
+    WB_PUT(entry, &uncertainties, struct wb_calibrate_result, result);
+    WB_PUT(object, &calibration, struct wb_calibrate_result, result);
     struct wb_json *const list = wb_json_set_array(object, "remarks");
     const int n = wb_calibrate_remarks(result, remarks);
     for (int i = 0; i < n; i++)
@@ -135,19 +342,14 @@ static void put_uncertainties(struct wb_json *object, const struct wb_calibrate_
 
 static void put_search(struct wb_json *object, const struct wb_calibrate_result *c)
 {
-    struct wb_json *const search = wb_json_set_object(object, "search");
-    wb_json_set_number(search, "first_strength_coefficient_MPa",
-                       c->first_strength_coefficient / WB_MPA);
-    wb_json_set_number(search, "first_hardening_exponent", c->first_hardening_exponent);
-    wb_json_set_text(search, "stopped_because", wb_calibrate_end_text(c->end));
-    wb_json_set_boolean(search, "restarted", c->restarted);
-    wb_json_set_number(search, "restart_moved", c->restart_moved);
-    wb_json_set_integer(search, "beam_runs", c->evaluations);
-    wb_json_set_integer(search, "beam_runs_not_converged", c->failed_evaluations);
-    struct wb_json *const k = wb_json_set_array(search, "strength_coefficient_MPa");
-    struct wb_json *const n = wb_json_set_array(search, "hardening_exponent");
-    struct wb_json *const error = wb_json_set_array(search, "error_over_F_max");
-    struct wb_json *const size = wb_json_set_array(search, "simplex_size");
+    struct wb_json *const of = wb_json_set_object(object, "search");
+    WB_PUT(of, &search, struct wb_calibrate_result, c);
+    wb_json_set_text(of, "stopped_because", wb_calibrate_end_text(c->end));
+    WB_PUT(of, &search, struct wb_calibrate_result, c);
+    struct wb_json *const k = wb_json_set_array(of, "strength_coefficient_MPa");
+    struct wb_json *const n = wb_json_set_array(of, "hardening_exponent");
+    struct wb_json *const error = wb_json_set_array(of, "error_over_F_max");
+    struct wb_json *const size = wb_json_set_array(of, "simplex_size");
     for (int i = 0; i < c->n_path; i++) {
         wb_json_append_number(k, c->path[i].strength_coefficient / WB_MPA);
         wb_json_append_number(n, c->path[i].hardening_exponent);
@@ -161,8 +363,7 @@ static void put_calibration(struct wb_json *object, const struct wb_recordings_r
     const struct wb_calibrate_result *const c = &wire->calibration;
     wb_numbers_put_properties(wb_json_set_object(object, "properties"), &c->material);
     put_uncertainties(object, c);
-    wb_json_set_number(object, "rms_over_F_max", c->rms);
-    wb_json_set_number(object, "largest_error_over_F_max", c->max_error);
+    WB_PUT(object, &calibration, struct wb_calibrate_result, c);
     put_comparison(object, &wire->steps[WB_RECORDINGS_CALIBRATION].result, c->scatter_rms,
                    c->residual_scatter_rms);
     put_search(object, c);
@@ -179,16 +380,15 @@ static bool put_state(struct wb_json *of, enum wb_recordings_results_state state
 }
 
 static void put_pooled(struct wb_json *of, const struct wb_recordings_results *results,
-                       const struct wb_recordings_cycle *cycle)
+                       const struct wb_recordings_cycle *of_wire)
 {
-    struct wb_json *const pooled =
+    struct wb_json *const interval =
         wb_json_set_object(of, "flexural_rigidity_N_mm2_pooled_over_wires");
     double low, high;
-    wb_recordings_cycle_interval(&results->pool, cycle, &low, &high);
-    wb_json_set_number(pooled, "low", low / WB_NMM2);
-    wb_json_set_number(pooled, "high", high / WB_NMM2);
-    wb_json_set_number(pooled, "deviation_of_logarithm", results->pool.deviation);
-    wb_json_set_integer(pooled, "degrees_of_freedom", results->pool.degrees);
+    wb_recordings_cycle_interval(&results->pool, of_wire, &low, &high);
+    wb_json_set_number(interval, "low", low / WB_NMM2);
+    wb_json_set_number(interval, "high", high / WB_NMM2);
+    WB_PUT(interval, &pooled, struct wb_recordings_cycle_pool, &results->pool);
 }
 
 static void put_cycle(struct wb_json *entry, const struct wb_recordings_results *results,
@@ -205,9 +405,9 @@ static void put_cycle(struct wb_json *entry, const struct wb_recordings_results 
     }
     if (states[WB_RECORDINGS_VALIDATION] == WB_RECORDINGS_NOT_WANTED)
         return;
-    struct wb_json *const prediction = wb_json_set_object(of, "prediction");
-    if (put_state(prediction, states[WB_RECORDINGS_VALIDATION], &wire->cycle_problems[1]))
-        put_validation(prediction, &wire->prediction);
+    struct wb_json *const predicted = wb_json_set_object(of, "prediction");
+    if (put_state(predicted, states[WB_RECORDINGS_VALIDATION], &wire->cycle_problems[1]))
+        put_validation(predicted, &wire->prediction);
 }
 
 /* As a laboratory's report has it. */
@@ -226,15 +426,11 @@ static void put_wire(struct wb_json *list, const struct wb_recordings_results *r
 {
     const struct wb_recordings_wire *const wanted = wire->wanted;
     struct wb_json *const entry = wb_json_append_object(list);
-    wb_json_set_text(entry, "wire", wanted->product.name);
-    wb_json_set_text(entry, "label", wanted->label);
-    wb_json_set_number(entry, "conductor_diameter_mm", wanted->product.conductor_diameter / WB_MM);
-    wb_json_set_number(entry, "outer_diameter_mm", wanted->product.outer_diameter / WB_MM);
-    wb_json_set_number(entry, "density_g_cm3", wanted->product.density / WB_G_PER_CM3);
+    WB_PUT(entry, &wire_keys, struct wb_recordings_wire, wanted);
     if (wanted->has_reference) {
-        struct wb_json *const published = wb_json_set_object(entry, "published");
-        wb_numbers_put_properties(published, &wanted->reference);
-        wb_json_set_text(published, "source", wanted->reference_source);
+        struct wb_json *const reference = wb_json_set_object(entry, "published");
+        wb_numbers_put_properties(reference, &wanted->reference);
+        WB_PUT(reference, &published, struct wb_recordings_wire, wanted);
     }
     for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
         const struct wb_recordings_results_step *const step = &wire->steps[k];
@@ -257,7 +453,7 @@ struct wb_json *wb_recordings_json_build(const void *context)
     const struct wb_recordings *const campaign = results->campaign;
     struct wb_json *const root = wb_json_create();
     wb_numbers_put_title(root, campaign->head.title, wb_recordings_draw_measured(results));
-    wb_json_set_boolean(root, "virtual_rig", results->any_virtual);
+    WB_PUT(root, &wb_recordings_json_keys, struct wb_recordings_results, results);
     wb_numbers_put_program(root);
     wb_numbers_put_campaign(root, &campaign->head);
     put_settings(root, campaign);

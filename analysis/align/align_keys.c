@@ -1,5 +1,7 @@
-/* Keys of dataset.json that alignment writes; reports copy corrections, checks and warnings. */
-#include "analysis/schema/tables.h"
+#include "analysis/align/align_keys.h"
+
+#include "analysis/keys/common.h"
+#include "analysis/keys/row.h"
 
 /* --- checks --- */
 
@@ -184,7 +186,7 @@ static const struct wb_key import_rows[] = {
 };
 static WB_KEYS(import, "mocap_import", "The import of files of cameras and load cell.");
 
-static const struct wb_key wb_schema_checks_rows[] = {
+static const struct wb_key wb_align_keys_checks_rows[] = {
     {"import", OBJECT | OPTIONAL, "", "of an imported recording: what the import found", &import},
     {"losses", OBJECT | OPTIONAL, "", "frames and readings that were lost", &losses},
     {"camera_clock", OBJECT | LIST | OPTIONAL, "", "segments of the cameras' clock", &camera_clock},
@@ -200,11 +202,11 @@ static const struct wb_key wb_schema_checks_rows[] = {
     {"rows", OBJECT | OPTIONAL, "", "rows of the tables", &check_rows},
     {"holds", OBJECT | LIST | OPTIONAL, "", "holds of the test by the operator", &hold},
 };
-WB_KEYS(wb_schema_checks, "checks", "Findings of the alignment.");
+WB_KEYS(wb_align_keys_checks, "checks", "Findings of the alignment.");
 
 /* --- corrections --- */
 
-static const struct wb_key wb_schema_correction_rows[] = {
+static const struct wb_key wb_align_keys_correction_rows[] = {
     {"name", TEXT, "", "the correction",
      .choices = "filter delay|marker offset|tare|zero drift|strand lean|force at zero "
                 "deflection|natural shape"},
@@ -216,7 +218,7 @@ static const struct wb_key wb_schema_correction_rows[] = {
     {"uncertainty_ms", NUMBER | UNKNOWN | OPTIONAL, "ms", "its standard uncertainty"},
     {"note", TEXT, "", "what was done, and how the size was found"},
 };
-WB_KEYS(wb_schema_correction, "correction",
+WB_KEYS(wb_align_keys_correction, "correction",
         "A correction of the data; its size stands in the key of its unit.");
 
 /* --- where the data come from --- */
@@ -317,19 +319,19 @@ static const struct wb_key rig_rows[] = {
 };
 static WB_KEYS(rig, "rig", "The rig, as its file says.");
 
-static const struct wb_key wb_schema_aligned_rows[] = {
+static const struct wb_key wb_align_keys_rows[] = {
     {"source", TEXT, "", "test on the bench, or on a virtual rig"},
     {"tool", OBJECT, "", "program that aligned the recording", &wb_keys_tool},
     {"settings", OBJECT, "", "settings of the alignment", &settings},
     {"specimen", OBJECT, "", "the specimen", &specimen},
     {"rig", OBJECT, "", "the rig", &rig},
     {"corrections", OBJECT | LIST, "", "corrections in the order in which they were made",
-     &wb_schema_correction},
-    {"checks", OBJECT, "", "findings of the alignment", &wb_schema_checks},
+     &wb_align_keys_correction},
+    {"checks", OBJECT, "", "findings of the alignment", &wb_align_keys_checks},
     {"warnings", TEXT | LIST, "", "warnings"},
     {"recordings", OBJECT | LIST, "", "the recording", &recording},
     {"cycles", INTEGER, "", "number of cycles"},
     {"largest_deflection_mm", NUMBER, "mm", "largest deflection"},
     {"complete", FLAG, "", "false: there are gaps, or the test was cut short"},
 };
-WB_KEYS(wb_schema_aligned, "aligned_keys", "Keys of the dataset of a recording.");
+WB_KEYS(wb_align_keys, "aligned_keys", "Keys of the dataset of a recording.");

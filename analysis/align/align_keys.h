@@ -1,0 +1,12 @@
+/* Keys of the dataset of a recording. */
+#ifndef WB_ANALYSIS_ALIGN_ALIGN_KEYS_H
+#define WB_ANALYSIS_ALIGN_ALIGN_KEYS_H
+
+#include "analysis/keys/keys.h"
+
+extern const struct wb_keys wb_align_keys; /* of its root */
+
+/* Parts that reports copy. */
+extern const struct wb_keys wb_align_keys_correction, wb_align_keys_checks;
+
+#endif
