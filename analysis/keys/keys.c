@@ -33,11 +33,12 @@ static double scale_of(const char *unit)
 
 /* --- values --- */
 
-static double number_at(const struct wb_key *row, const char *at)
+/* `unit`: of the object, for rows without one. */
+static double number_at(const struct wb_key *row, const char *at, const char *unit)
 {
     switch (row->place.form) {
     case WB_KEY_DOUBLE:
-        return *(const double *)(const void *)at / scale_of(row->unit);
+        return *(const double *)(const void *)at / scale_of(row->unit[0] ? row->unit : unit);
     case WB_KEY_INT:
         return *(const int *)(const void *)at;
     default:
@@ -84,12 +85,14 @@ struct walk {
     struct wb_json *object;
     const char *in; /* NULL: places in any struct are meant */
     const char *from;
-    int row;    /* number of the current row, from 1 */
-    int behind; /* number of the last row whose key the object has */
+    const char *unit; /* of the object */
+    int row;          /* number of the current row, from 1 */
+    int behind;       /* number of the last row whose key the object has */
     bool has_begun, has_ended;
 };
 
-static void put_all(struct wb_json *object, const struct wb_keys *keys, const void *from);
+static void put_all(struct wb_json *object, const struct wb_keys *keys, const void *from,
+                    const char *unit);
 
 static bool has_row(const struct wb_json *object, const struct wb_key *row)
 {
@@ -117,17 +120,18 @@ static void put_list(struct wb_json *array, const struct wb_key *row, const char
     for (size_t i = 0; i < n; i++, item += place->step) {
         char word[80];
         if (row->of)
-            put_all(wb_json_append_object(array), row->of, item);
+            put_all(wb_json_append_object(array), row->of, item, row->unit);
         else if (row->type & TEXT)
             wb_json_append_text(array, text_at(row, item, word));
         else
-            wb_json_append_number(array, number_at(row, item));
+            wb_json_append_number(array, number_at(row, item, ""));
     }
 }
 
-static void put_number(struct wb_json *object, const struct wb_key *row, const char *at)
+static void put_number(struct wb_json *object, const struct wb_key *row, const char *at,
+                       const char *unit)
 {
-    const double value = number_at(row, at);
+    const double value = number_at(row, at, unit);
     if (isfinite(value) || (row->type & IF_KNOWN) != IF_KNOWN)
         wb_json_set_number(object, row->key, row->type & ROUNDED ? rounded(value) : value);
 }
@@ -149,21 +153,22 @@ static void put_settings(struct wb_json *object, const struct wb_key *row, const
     }
 }
 
-static void put_row(struct wb_json *object, const struct wb_key *row, const char *from)
+static void put_row(struct wb_json *object, const struct wb_key *row, const char *from,
+                    const char *unit)
 {
     const char *const at = from + row->place.offset;
     if (row->settings)
         put_settings(object, row, at);
     else if (!row->key)
-        put_all(object, row->of, at);
+        put_all(object, row->of, at, unit);
     else if (row->type & LIST)
         put_list(wb_json_set_array(object, row->key), row, from);
     else if (row->of)
-        put_all(wb_json_set_object(object, row->key), row->of, at);
+        put_all(wb_json_set_object(object, row->key), row->of, at, row->unit);
     else if (row->type & TEXT)
         put_text(object, row, at);
     else if (row->type & NUMBER)
-        put_number(object, row, at);
+        put_number(object, row, at, unit);
     else if (row->type & FLAG)
         wb_json_set_boolean(object, row->key, integer_at(row, at));
     else
@@ -197,7 +202,7 @@ static void put_next(struct walk *walk, const struct wb_key *row)
     if (walk->row <= walk->behind || walk->has_ended)
         return;
     if (row->place.in && strcmp(row->place.in, walk->in) == 0) {
-        put_row(walk->object, row, walk->from);
+        put_row(walk->object, row, walk->from, "");
         walk->has_begun = true;
     } else {
         walk->has_ended = walk->has_begun;
@@ -216,12 +221,13 @@ void wb_keys_put(struct wb_json *object, const struct wb_keys *keys, const char 
 static void put_any(struct walk *walk, const struct wb_key *row)
 {
     if (row->place.in)
-        put_row(walk->object, row, walk->from);
+        put_row(walk->object, row, walk->from, walk->unit);
 }
 
 /* All rows with a place, of an object within another. */
-static void put_all(struct wb_json *object, const struct wb_keys *keys, const void *from)
+static void put_all(struct wb_json *object, const struct wb_keys *keys, const void *from,
+                    const char *unit)
 {
-    struct walk walk = {.object = object, .from = from};
+    struct walk walk = {.object = object, .from = from, .unit = unit};
     walk_rows(&walk, keys, put_any);
 }

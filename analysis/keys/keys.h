@@ -77,7 +77,7 @@ struct wb_keys {
  * place in that struct. They begin behind the last key that the object has already, and end before
  * the first row without a place in it; so calls for several structs alternate with code that sets
  * other keys, and the object's keys have the order of the rows. Numbers are converted to the unit
- * of their row. */
+ * of their row, in an object within another to that of the object where the row has none. */
 #define WB_PUT(object, keys, in, from)                                                             \
     wb_keys_put(object, keys, #in, (const in *){from}) /* with a check of its type */
 void wb_keys_put(struct wb_json *object, const struct wb_keys *keys, const char *in,

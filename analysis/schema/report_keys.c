@@ -5,7 +5,7 @@
 
 static const struct wb_keys *const kinds[] = {
     &wb_recordings_json_keys,     &wb_schema_report_comparison, &wb_schema_report_bundles,
-    &wb_schema_report_prediction, &wb_schema_report_machine,    NULL};
+    &wb_schema_report_prediction, &wb_machines_kind_keys,       NULL};
 const struct wb_keys wb_schema_report = {
     "report", "A report; its keys depend on the kind of the campaign.", .alternatives = kinds};
 

@@ -9,6 +9,6 @@
 extern const struct wb_keys wb_schema_report_comparison;
 extern const struct wb_keys wb_schema_report_bundles;
 extern const struct wb_keys wb_schema_report_prediction;
-extern const struct wb_keys wb_schema_report_machine;
+extern const struct wb_keys wb_machines_kind_keys;
 
 #endif

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "analysis/keys/common.h"
+#include "analysis/keys/row.h"
 #include "analysis/report/numbers.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
@@ -230,28 +232,57 @@ void wb_machines_cable_put(struct wb_document *document, const struct wb_machine
 
 /* --- numbers --- */
 
-static void put_interval(struct wb_json *entry, const char *key,
-                         const struct wb_cable_interval *interval)
-{
-    struct wb_json *const object = wb_json_set_object(entry, key);
-    wb_json_set_number(object, "value", interval->value);
-    wb_json_set_number(object, "low_95", interval->low);
-    wb_json_set_number(object, "high_95", interval->high);
-}
+#define INTERVAL(member) WB_AT(struct wb_cable_interval, member)
+#define PLACE(member) WB_AT(struct wb_cable_place, member)
+#define RING(member) WB_AT(struct wb_cable_ring, member)
+
+static const struct wb_key interval_rows[] = {
+    {"value", INTERVAL(value) | UNKNOWN, "", "value"},
+    {"low_95", INTERVAL(low) | UNKNOWN, "", "lower end of its 95 % confidence interval"},
+    {"high_95", INTERVAL(high) | UNKNOWN, "", "upper end of that interval"},
+};
+static WB_KEYS(interval, "interval", "A value and its interval.");
+
+static const struct wb_key layer_place_rows[] = {
+    {"curvature_1_m", NUMBER | UNKNOWN, "1/m", "curvature"},
+    {"seating", FLAG, "", "the deflection is so small that the seating of the wire decides"},
+    {"measured_Nmm", PLACE(measured) | UNKNOWN, "N mm", "measured moment"},
+    {"free_Nmm", PLACE(free) | UNKNOWN, "N mm", "moment of wires that slide freely"},
+    {"bonded_Nmm", PLACE(bonded) | UNKNOWN, "N mm", "moment of bonded wires"},
+    {"over_first_layer", NUMBER | UNKNOWN, "", "measured moment over that of the first layer"},
+    {"measured_over_free", PLACE(ratio), "", "measured moment over that of free wires", &interval},
+    {"chi", PLACE(chi), "", "place between free (0) and bonded (1) wires", &interval},
+    {"chi_of_each_series", NUMBER | LIST | UNKNOWN, "", "chi with the wires of each series alone"},
+    {"chi_of_half_and_twice_the_zero", NUMBER | LIST | UNKNOWN, "",
+     "chi with half and twice the force that marks the first contact"},
+};
+static WB_KEYS(layer_place, "layer_place", "A layer at one curvature.");
+
+static const struct wb_key layer_keys_rows[] = {
+    {"group", TEXT, "", "group of the layer"},
+    {"tests", WB_AT(struct wb_machines_layer, n), "", "number of tests"},
+    {"places", OBJECT | LIST, "", "curvatures", &layer_place},
+};
+static WB_KEYS(layer_keys, "cable_layer", "A layer of the cable.");
+
+static const struct wb_key wb_machines_cable_keys_rows[] = {
+    {"wire_count", RING(n_wires), "", "wires round the core"},
+    {"wire_circle_radius_mm", RING(radius), "mm", "radius of the circle of their centres"},
+    {"conductor_area_mm2", RING(area), "mm2", "area of the metal in one wire"},
+    {"conductor", OBJECT, "", "law of the conductor", &wb_keys_ludwik},
+    {"layers", OBJECT | LIST, "", "layers", &layer_keys},
+};
+WB_KEYS(wb_machines_cable_keys, "cable", "A layered cable.");
 
 static void put_place(struct wb_json *list, const struct wb_machines_layer *layer, int n_series,
                       int k)
 {
-    const struct wb_cable_place *const place = &layer->place[k];
     struct wb_json *const entry = wb_json_append_object(list);
     wb_json_set_number(entry, "curvature_1_m", layer->curvature[k]);
     wb_json_set_boolean(entry, "seating", layer->is_seating[k]);
-    wb_json_set_number(entry, "measured_Nmm", place->measured / WB_NMM);
-    wb_json_set_number(entry, "free_Nmm", place->free / WB_NMM);
-    wb_json_set_number(entry, "bonded_Nmm", place->bonded / WB_NMM);
+    WB_PUT(entry, &layer_place, struct wb_cable_place, &layer->place[k]);
     wb_json_set_number(entry, "over_first_layer", layer->over_first[k]);
-    put_interval(entry, "measured_over_free", &place->ratio);
-    put_interval(entry, "chi", &place->chi);
+    WB_PUT(entry, &layer_place, struct wb_cable_place, &layer->place[k]);
     struct wb_json *const series = wb_json_set_array(entry, "chi_of_each_series");
     for (int s = 0; s < n_series; s++)
         wb_json_append_number(series, layer->chi_of_series[s][k]);
@@ -266,16 +297,14 @@ void wb_machines_cable_put_json(struct wb_json *root, const struct wb_machines_r
     if (results->cable.n_layers == 0)
         return;
     struct wb_json *const object = wb_json_set_object(root, "cable");
-    wb_json_set_integer(object, "wire_count", cable->ring.n_wires);
-    wb_json_set_number(object, "wire_circle_radius_mm", cable->ring.radius / WB_MM);
-    wb_json_set_number(object, "conductor_area_mm2", cable->ring.area / (WB_MM * WB_MM));
+    WB_PUT(object, &wb_machines_cable_keys, struct wb_cable_ring, &cable->ring);
     wb_numbers_put_properties(wb_json_set_object(object, "conductor"), &cable->ring.conductor);
     struct wb_json *const layers = wb_json_set_array(object, "layers");
     for (int i = 0; i < results->cable.n_layers; i++) {
         const struct wb_machines_layer *const layer = &results->cable.layers[i];
         struct wb_json *const entry = wb_json_append_object(layers);
         wb_json_set_text(entry, "group", group_of(results, layer)->name);
-        wb_json_set_integer(entry, "tests", layer->n);
+        WB_PUT(entry, &layer_keys, struct wb_machines_layer, layer);
         struct wb_json *const places = wb_json_set_array(entry, "places");
         for (int k = 0; k < WB_MACHINES_PLACES && layer->n > 0; k++)
             put_place(places, layer, cable->n_wires, k);

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "analysis/keys/row.h"
 #include "analysis/report/numbers.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
@@ -230,49 +231,101 @@ void wb_machines_fits_put(struct wb_document *document, const struct wb_machines
 
 /* --- numbers --- */
 
-static void put_number(struct wb_json *object, const char *key, const struct wb_estimate *e,
-                       double unit)
-{
-    struct wb_json *const entry = wb_json_set_object(object, key);
-    wb_json_set_number(entry, "value", e->value / unit);
-    wb_json_set_number(entry, "low_95", e->low / unit);
-    wb_json_set_number(entry, "high_95", e->high / unit);
-    wb_json_set_number(entry, "low_of_bench", e->candidates_low / unit);
-    wb_json_set_number(entry, "high_of_bench", e->candidates_high / unit);
-}
+#define ESTIMATE(member) WB_AT(struct wb_estimate, member)
+#define MEMBER(member) WB_AT(struct wb_three_point_member, member)
+#define LEFT_OUT(member) WB_AT(struct wb_left_out, member)
+#define CALIBRATION(member) WB_AT(struct wb_three_point_calibration, member)
+
+static const struct wb_key estimate_rows[] = {
+    {"value", ESTIMATE(value) | UNKNOWN, "", "value, in the unit of the key above"},
+    {"low_95", ESTIMATE(low) | UNKNOWN, "", "lower end of its 95 % confidence interval"},
+    {"high_95", ESTIMATE(high) | UNKNOWN, "", "upper end of that interval"},
+    {"low_of_bench", ESTIMATE(candidates_low) | UNKNOWN, "",
+     "least value over friction and nose radius"},
+    {"high_of_bench", ESTIMATE(candidates_high) | UNKNOWN, "",
+     "largest value over friction and nose radius"},
+};
+static WB_KEYS(estimate, "bench_estimate", "A value and its intervals.");
+
+static const struct wb_key moment_keys_rows[] = {
+    {"curvature_1_m", NUMBER | UNKNOWN, "1/m", "curvature"},
+    {"moment_Nmm", WB_HERE(struct wb_estimate), "N mm", "moment of a first loading", &estimate},
+};
+static WB_KEYS(moment_keys, "fit_moment", "The moment at one curvature.");
+
+static const struct wb_key fit_test_rows[] = {
+    {"series", MEMBER(data.info.piece.series), "", "series that the test belongs to"},
+    {"sample", MEMBER(data.info.sample), "", "number of the piece"},
+    {"problem", TEXT | OPTIONAL, "", "why no law was fitted"},
+    {"EI_Nmm2", MEMBER(rigidity) | UNKNOWN | OPTIONAL, "N mm2", "EI at zero curvature"},
+    {"largest_moment_Nmm", MEMBER(moment[WB_THREE_POINT_MOMENTS - 1]) | UNKNOWN | OPTIONAL, "N mm",
+     "moment at the last curvature"},
+    {"misfit", MEMBER(fit.misfit) | UNKNOWN | OPTIONAL, "",
+     "RMS of the force residuals over F_max"},
+    {"converged", MEMBER(fit.is_converged) | OPTIONAL, "", "the fit converged"},
+    {"first_contact_mm", MEMBER(fit.first_contact) | UNKNOWN | OPTIONAL, "mm",
+     "travel at the first contact"},
+    {"usable_mm", MEMBER(data.usable) | UNKNOWN | OPTIONAL, "mm",
+     "travel up to which the test is used"},
+    {"limit", WB_CHOICE(struct wb_three_point_member, data.limit) | OPTIONAL, "",
+     "reason of that limit", .choices = "end of the loading|given|kink|third of the span"},
+};
+static WB_KEYS(fit_test, "fit_test", "The fit of a test.");
+
+static const struct wb_key left_out_keys_rows[] = {
+    {"scatter_N", LEFT_OUT(scatter) | UNKNOWN, "N",
+     "standard deviation of the tests, RMS over deflections"},
+    {"scatter_alone_N", LEFT_OUT(expected) | UNKNOWN, "N",
+     "RMS error expected from specimen scatter alone: sqrt(n / (n - 1)) times that"},
+    {"model_N", LEFT_OUT(rms) | UNKNOWN, "N", "RMS of the model less the test that was left out"},
+    {"bias_N", LEFT_OUT(bias) | UNKNOWN, "N", "RMS over deflections of `bias_at_N`"},
+    {"bias_over_scatter", NUMBER | UNKNOWN, "", "`bias_N` over `scatter_N`"},
+    {"deflection_mm", WB_FULL(struct wb_left_out, deflection) | UNKNOWN, "mm",
+     "deflections that all tests reach"},
+    {"bias_at_N", WB_FULL(struct wb_left_out, offset) | UNKNOWN, "N",
+     "model less the mean of the other tests"},
+};
+static WB_KEYS(left_out_keys, "left_out", "A validation by leaving each test out.");
+
+static const struct wb_key wb_machines_fits_keys_rows[] = {
+    {"wire", TEXT, "", "name of the wire"},
+    {"test_count", WB_AT(struct wb_machines_fit, n), "", "number of tests"},
+    {"tests_fitted", CALIBRATION(n_fitted) | OPTIONAL, "", "tests that a law was fitted to"},
+    {"series", CALIBRATION(n_series) | OPTIONAL, "", "number of series"},
+    {"misfit", CALIBRATION(misfit) | UNKNOWN | OPTIONAL, "",
+     "RMS of the force residuals over F_max"},
+    {"s_of_ln_EI_between_series", CALIBRATION(series_deviation) | UNKNOWN | OPTIONAL, "",
+     "standard deviation of ln EI between series"},
+    {"EI_identifiable", CALIBRATION(is_rigidity_identifiable) | OPTIONAL, "",
+     "the data determine EI at zero curvature"},
+    {"EI_Nmm2", CALIBRATION(rigidity) | OPTIONAL, "N mm2", "EI at zero curvature", &estimate},
+    {"moments", OBJECT | LIST | OPTIONAL, "", "moments of a first loading", &moment_keys},
+    {"tests", OBJECT | LIST | OPTIONAL, "", "fits of the tests", &fit_test},
+    {"problem", TEXT | OPTIONAL, "", "why there is no fit or no validation"},
+    {"left_out", OBJECT | OPTIONAL, "", "validation by leaving each test out", &left_out_keys},
+};
+WB_KEYS(wb_machines_fits_keys, "fitted_wire",
+        "The calibration of a wire on three-point bending tests.");
 
 static void put_calibration(struct wb_json *entry, const struct wb_three_point_calibration *c)
 {
-    wb_json_set_integer(entry, "tests_fitted", c->n_fitted);
-    wb_json_set_integer(entry, "series", c->n_series);
-    wb_json_set_number(entry, "misfit", c->misfit);
-    wb_json_set_number(entry, "s_of_ln_EI_between_series", c->series_deviation);
-    wb_json_set_boolean(entry, "EI_identifiable", c->is_rigidity_identifiable);
-    put_number(entry, "EI_Nmm2", &c->rigidity, WB_NMM2);
+    WB_PUT(entry, &wb_machines_fits_keys, struct wb_three_point_calibration, c);
     struct wb_json *const moments = wb_json_set_array(entry, "moments");
     for (int k = 0; k < WB_THREE_POINT_MOMENTS; k++) {
         struct wb_json *const moment = wb_json_append_object(moments);
         wb_json_set_number(moment, "curvature_1_m", c->curvature[k]);
-        put_number(moment, "moment_Nmm", &c->moment[k], WB_NMM);
+        WB_PUT(moment, &moment_keys, struct wb_estimate, &c->moment[k]);
     }
     struct wb_json *const tests = wb_json_set_array(entry, "tests");
     for (int i = 0; i < c->n_members; i++) {
         const struct wb_three_point_member *const m = &c->members[i];
         struct wb_json *const test = wb_json_append_object(tests);
-        wb_json_set_text(test, "series", m->data.info.piece.series);
-        wb_json_set_integer(test, "sample", m->data.info.sample);
+        WB_PUT(test, &fit_test, struct wb_three_point_member, m);
         if (!m->is_fitted) {
             wb_json_set_text(test, "problem", m->why.text);
             continue;
         }
-        wb_json_set_number(test, "EI_Nmm2", m->rigidity / WB_NMM2);
-        wb_json_set_number(test, "largest_moment_Nmm",
-                           m->moment[WB_THREE_POINT_MOMENTS - 1] / WB_NMM);
-        wb_json_set_number(test, "misfit", m->fit.misfit);
-        wb_json_set_boolean(test, "converged", m->fit.is_converged);
-        wb_json_set_number(test, "first_contact_mm", m->fit.first_contact / WB_MM);
-        wb_json_set_number(test, "usable_mm", m->data.usable / WB_MM);
-        wb_json_set_text(test, "limit", wb_three_point_limit_name(m->data.limit));
+        WB_PUT(test, &fit_test, struct wb_three_point_member, m);
     }
 }
 
@@ -286,7 +339,7 @@ void wb_machines_fits_put_json(struct wb_json *root, const struct wb_machines_re
         const struct wb_left_out *const r = &fit->left_out;
         struct wb_json *const entry = wb_json_append_object(list);
         wb_json_set_text(entry, "wire", wire_of(results, fit));
-        wb_json_set_integer(entry, "test_count", fit->n);
+        WB_PUT(entry, &wb_machines_fits_keys, struct wb_machines_fit, fit);
         if (fit->is_fitted)
             put_calibration(entry, &fit->calibration);
         if (!fit->is_validated) {
@@ -294,12 +347,8 @@ void wb_machines_fits_put_json(struct wb_json *root, const struct wb_machines_re
             continue;
         }
         struct wb_json *const left_out = wb_json_set_object(entry, "left_out");
-        wb_json_set_number(left_out, "scatter_N", r->scatter);
-        wb_json_set_number(left_out, "scatter_alone_N", r->expected);
-        wb_json_set_number(left_out, "model_N", r->rms);
-        wb_json_set_number(left_out, "bias_N", r->bias);
+        WB_PUT(left_out, &left_out_keys, struct wb_left_out, r);
         wb_json_set_number(left_out, "bias_over_scatter", r->bias / r->scatter);
-        wb_numbers_put_list(left_out, "deflection_mm", r->deflection, WB_LEFT_OUT_GRID, WB_MM);
-        wb_numbers_put_list(left_out, "bias_at_N", r->offset, WB_LEFT_OUT_GRID, 1.0);
+        WB_PUT(left_out, &left_out_keys, struct wb_left_out, r);
     }
 }

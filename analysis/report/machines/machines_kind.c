@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/keys/common.h"
+#include "analysis/keys/row.h"
 #include "analysis/report/numbers.h"
 #include "analysis/report/pages.h"
 #include "analysis/report/pdf.h"
@@ -239,6 +241,56 @@ static void build_pages(struct wb_document *document, const void *context,
 
 /* --- numbers --- */
 
+#define TEST(member) WB_AT(struct wb_machines_test, member)
+#define GROUP(member) WB_AT(struct wb_machines_group, member)
+#define MEAN(member) WB_AT(struct wb_machines_group_results, member)
+
+static const struct wb_key machine_test_rows[] = {
+    {"file", TEXT, "", "file of the test"},
+    {"state", TEXT, "", "whether the test is used", .choices = "used|missing|refused"},
+    {"sha256", TEXT | OPTIONAL, "", "SHA-256 of the file"},
+    {"problem", TEXT | OPTIONAL, "", "why the test is not used"},
+    {"rows", TEST(report.rows) | OPTIONAL, "", "rows of the test"},
+    {"empty_rows", TEST(report.empty) | OPTIONAL, "", "lines without force and travel"},
+    {"partial_rows", TEST(report.partial) | OPTIONAL, "",
+     "rows left out because a value is missing"},
+    {"largest_force_N", TEST(report.largest_force) | UNKNOWN | OPTIONAL, "N", "largest force"},
+    {"contact_mm", TEST(start) | UNKNOWN | OPTIONAL, "mm", "travel at the first contact"},
+    {"early_rigidity_Nmm2", TEST(rigidity) | UNKNOWN | OPTIONAL, "N mm2",
+     "F L^3 / 48 d at d = 0.02 of the span from the first contact"},
+};
+static WB_KEYS(machine_test, "machine_test", "A test of a group.");
+
+static const struct wb_key group_keys_rows[] = {
+    {"name", GROUP(name), "", "name of the group"},
+    {"label", GROUP(label), "", "name in the report"},
+    {"outer_diameter_mm", GROUP(piece.outer_diameter), "mm", "outer diameter"},
+    {"zero_force_mN", GROUP(zero_force), "mN", "force that marks the first contact"},
+    {"machine", OBJECT, "", "testing machine", &wb_keys_machine},
+    {"early_rigidity_Nmm2", MEAN(rigidity) | UNKNOWN, "N mm2", "mean of the tests' early rigidity"},
+    {"early_rigidity_deviation_Nmm2", MEAN(rigidity_deviation) | UNKNOWN, "N mm2",
+     "its standard deviation"},
+    {"reach_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "deflection that all tests reach"},
+    {"force_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N",
+     "mean force at even deflections from 0 to `reach_mm`"},
+    {"force_deviation_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N", "its standard deviation"},
+    {"tests", OBJECT | LIST, "", "tests", &machine_test},
+};
+static WB_KEYS(group_keys, "machine_group", "A group of tests.");
+
+static const struct wb_key wb_machines_kind_keys_rows[] = {
+    {.of = &wb_numbers_head_keys},
+    {"tests_wanted", WB_AT(struct wb_kind_outcome, n_wanted), "", "tests of the campaign"},
+    {"tests_used", WB_AT(struct wb_kind_outcome, n_usable), "", "tests that are used"},
+    {"tests_missing", WB_AT(struct wb_kind_outcome, n_missing), "",
+     "tests whose files are missing"},
+    {"groups", OBJECT | LIST, "", "groups of tests", &group_keys},
+    {"cable", OBJECT | OPTIONAL, "", "layered cable", &wb_machines_cable_keys},
+    {"wires", OBJECT | LIST | OPTIONAL, "", "calibrated wires", &wb_machines_fits_keys},
+};
+WB_KEYS(wb_machines_kind_keys, "report_of_machine",
+        "The report of a campaign of testing machines.");
+
 static void put_test(struct wb_json *list, const char *file, const struct wb_machines_test *test)
 {
     struct wb_json *const entry = wb_json_append_object(list);
@@ -253,12 +305,7 @@ static void put_test(struct wb_json *list, const char *file, const struct wb_mac
         wb_json_set_text(entry, "problem", wb_text_string(&test->problem));
         return;
     }
-    wb_json_set_integer(entry, "rows", (int64_t)test->report.rows);
-    wb_json_set_integer(entry, "empty_rows", (int64_t)test->report.empty);
-    wb_json_set_integer(entry, "partial_rows", (int64_t)test->report.partial);
-    wb_json_set_number(entry, "largest_force_N", test->report.largest_force);
-    wb_json_set_number(entry, "contact_mm", test->start / WB_MM);
-    wb_json_set_number(entry, "early_rigidity_Nmm2", test->rigidity / WB_NMM2);
+    WB_PUT(entry, &machine_test, struct wb_machines_test, test);
 }
 
 static struct wb_json *build_json(const void *context)
@@ -266,22 +313,15 @@ static struct wb_json *build_json(const void *context)
     const struct wb_machines_results *const results = context;
     const struct wb_machines *const campaign = results->campaign;
     struct wb_json *const root = wb_numbers_create(&campaign->head, "measured", &results->outcome);
-    wb_json_set_integer(root, "tests_wanted", results->outcome.n_wanted);
-    wb_json_set_integer(root, "tests_used", results->outcome.n_usable);
-    wb_json_set_integer(root, "tests_missing", results->outcome.n_missing);
+    WB_PUT(root, &wb_machines_kind_keys, struct wb_kind_outcome, &results->outcome);
     struct wb_json *const groups = wb_json_set_array(root, "groups");
     for (int g = 0; g < campaign->n_groups; g++) {
         const struct wb_machines_group *const group = &campaign->groups[g];
         const struct wb_machines_group_results *const of = &results->groups[g];
         struct wb_json *const entry = wb_json_append_object(groups);
-        wb_json_set_text(entry, "name", group->name);
-        wb_json_set_text(entry, "label", group->label);
-        wb_json_set_number(entry, "outer_diameter_mm", group->piece.outer_diameter / WB_MM);
-        wb_json_set_number(entry, "zero_force_mN", group->zero_force / WB_MN);
+        WB_PUT(entry, &group_keys, struct wb_machines_group, group);
         wb_machine_set_json(&group->machine, wb_json_set_object(entry, "machine"));
-        wb_json_set_number(entry, "early_rigidity_Nmm2", of->rigidity / WB_NMM2);
-        wb_json_set_number(entry, "early_rigidity_deviation_Nmm2",
-                           of->rigidity_deviation / WB_NMM2);
+        WB_PUT(entry, &group_keys, struct wb_machines_group_results, of);
         if (of->n_usable > 0) {
             wb_json_set_number(entry, "reach_mm", of->reach / WB_MM);
             wb_numbers_put_list(entry, "force_N", of->force, WB_MACHINES_GRID, 1.0);
