@@ -1,11 +1,15 @@
-/* Keys of report.json of recordings, and of manifest.json. The other kinds of report are in
- * report_kinds_keys.c, the keys that all kinds share in common_keys.c. */
-#include "analysis/schema/report_keys.h"
+/* Keys of report.json, and of manifest.json. */
 #include "analysis/report/bench/recordings_kind.h"
+#include "analysis/report/bundles/bundles_kind.h"
+#include "analysis/report/machines/machines_kind.h"
+#include "analysis/report/numbers.h"
+#include "analysis/report/predictions/predictions_kind.h"
+#include "analysis/report/wires/wires_kind.h"
+#include "analysis/schema/tables.h"
 
-static const struct wb_keys *const kinds[] = {
-    &wb_recordings_json_keys,     &wb_schema_report_comparison, &wb_schema_report_bundles,
-    &wb_schema_report_prediction, &wb_machines_kind_keys,       NULL};
+static const struct wb_keys *const kinds[] = {&wb_recordings_json_keys, &wb_wires_json_keys,
+                                              &wb_bundles_json_keys,    &wb_predictions_kind_keys,
+                                              &wb_machines_kind_keys,   NULL};
 const struct wb_keys wb_schema_report = {
     "report", "A report; its keys depend on the kind of the campaign.", .alternatives = kinds};
 

@@ -2,6 +2,7 @@
 #ifndef WB_ANALYSIS_REPORT_BUNDLES_BUNDLES_KIND_H
 #define WB_ANALYSIS_REPORT_BUNDLES_BUNDLES_KIND_H
 
+#include "analysis/keys/keys.h"
 #include "analysis/report/bundles/bundles_results.h"
 #include "analysis/report/kind.h"
 
@@ -20,6 +21,7 @@ enum {
 extern const struct wb_figures_row wb_bundles_figures[WB_BUNDLES_FIGURE_ROWS];
 wb_kind_pages wb_bundles_pages_build;
 wb_kind_json wb_bundles_json_build;
+extern const struct wb_keys wb_bundles_json_keys; /* of its report.json */
 
 /* The first page, without its figure. */
 void wb_bundles_found_put(struct wb_document *document, const struct wb_bundles_results *results);

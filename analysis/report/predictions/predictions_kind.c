@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/keys/row.h"
 #include "analysis/predict/bands_output.h"
 #include "analysis/report/draw/figures_bundle.h"
 #include "analysis/report/found.h"
@@ -485,32 +486,70 @@ static void build_pages(struct wb_document *document, const void *context,
 
 /* --- numbers --- */
 
+#define PLACE(member) WB_AT(struct wb_predictions_place, member)
+#define VERDICT(member) WB_AT(struct wb_predictions_verdict, member)
+#define BUNDLE(member) WB_AT(struct wb_predictions_bundle, member)
+
+static const struct wb_key place_keys_rows[] = {
+    {"of", TEXT, "", "the number", .choices = "force_N|deflection_springback"},
+    {"deflection_mm", PLACE(at) | IF_KNOWN, "mm", "of a force: deflection"},
+    {"test", PLACE(measured) | UNKNOWN, "", "value of the test, in N or as a ratio"},
+    {"median", PLACE(band.median) | UNKNOWN, "", "median of the band"},
+    {"low", PLACE(band.wide_low) | UNKNOWN, "", "lower end of the band"},
+    {"high", PLACE(band.wide_high) | UNKNOWN, "", "upper end of the band"},
+    {"it_lies", TEXT, "", "place of the test's value", .choices = "below|within|above|not reached"},
+};
+static WB_KEYS(place_keys, "predicted_number", "A number of a test and its band.");
+
+static const struct wb_key test_keys_rows[] = {
+    {"label", WB_AT(struct wb_predictions_test, label), "", "name in the report"},
+    {"dataset", WB_AT(struct wb_predictions_test, given), "", "folder of the dataset, as given"},
+    {"problem", TEXT | OPTIONAL, "", "why the test is not compared"},
+    {"sha256", VERDICT(sha256) | OPTIONAL, "", "SHA-256 of force_deflection.csv"},
+    {"origin", TEXT | OPTIONAL, "", "origin of the test",
+     .choices = "measured|measured on a virtual rig|a simulation, no test"},
+    {"case", TEXT | OPTIONAL, "", "case that the test is compared with"},
+    {"verdict", VERDICT(words) | OPTIONAL, "", "verdict on all numbers"},
+    {"places", OBJECT | LIST | OPTIONAL, "", "the numbers", &place_keys},
+};
+static WB_KEYS(test_keys, "predicted_test", "A test beside the bands.");
+
+static const struct wb_key bundle_keys_rows[] = {
+    {"label", BUNDLE(label), "", "name in the report"},
+    {"bundle", BUNDLE(model_name), "", "name of the bundle's file"},
+    {"inputs_sha256", TEXT, "", "SHA-256 of the inputs of the section model"},
+    {"uncertainty", OBJECT | OPTIONAL, "", "bands", &wb_bands_output_keys},
+    {"problem", TEXT | OPTIONAL, "", "why there are no bands"},
+    {"tests", OBJECT | LIST, "", "tests", &test_keys},
+};
+static WB_KEYS(bundle_keys, "predicted_bundle", "A bundle.");
+
+static const struct wb_key wb_predictions_kind_keys_rows[] = {
+    {.of = &wb_numbers_head_keys},
+    {"bundles", OBJECT | LIST, "", "bundles", &bundle_keys},
+};
+WB_KEYS(wb_predictions_kind_keys, "report_of_prediction",
+        "The report of a campaign of predictions.");
+
 static void put_test_numbers(struct wb_json *list, const struct wb_predictions_test *test,
                              const struct wb_predictions_verdict *verdict)
 {
     struct wb_json *const entry = wb_json_append_object(list);
-    wb_json_set_text(entry, "label", test->label);
-    wb_json_set_text(entry, "dataset", test->given);
+    WB_PUT(entry, &test_keys, struct wb_predictions_test, test);
     if (!verdict->against) {
         wb_json_set_text(entry, "problem", wb_text_string(&verdict->problem));
         return;
     }
-    wb_json_set_text(entry, "sha256", verdict->sha256);
+    WB_PUT(entry, &test_keys, struct wb_predictions_verdict, verdict);
     wb_json_set_text(entry, "origin", origin_of(&verdict->dataset));
     wb_json_set_text(entry, "case", verdict->against->variant.name);
-    wb_json_set_text(entry, "verdict", verdict->words);
+    WB_PUT(entry, &test_keys, struct wb_predictions_verdict, verdict);
     struct wb_json *const places = wb_json_set_array(entry, "places");
     for (int k = 0; k < WB_PREDICTIONS_PLACES; k++) {
         const struct wb_predictions_place *const place = &verdict->places[k];
         struct wb_json *const item = wb_json_append_object(places);
-        const bool is_force = isfinite(place->at);
-        wb_json_set_text(item, "of", is_force ? "force_N" : "deflection_springback");
-        if (is_force)
-            wb_json_set_number(item, "deflection_mm", place->at / WB_MM);
-        wb_json_set_number(item, "test", place->measured);
-        wb_json_set_number(item, "median", place->band.median);
-        wb_json_set_number(item, "low", place->band.wide_low);
-        wb_json_set_number(item, "high", place->band.wide_high);
+        wb_json_set_text(item, "of", isfinite(place->at) ? "force_N" : "deflection_springback");
+        WB_PUT(item, &place_keys, struct wb_predictions_place, place);
         wb_json_set_text(item, "it_lies", side_of(place));
     }
 }
@@ -526,8 +565,7 @@ static struct wb_json *build_json(const void *context)
         const struct wb_predictions_bundle *const bundle = &campaign->bundles[b];
         const struct wb_predictions_prediction *const of = &results->bundles[b];
         struct wb_json *const entry = wb_json_append_object(list);
-        wb_json_set_text(entry, "label", bundle->label);
-        wb_json_set_text(entry, "bundle", bundle->model_name);
+        WB_PUT(entry, &bundle_keys, struct wb_predictions_bundle, bundle);
         char sha256[WB_SHA256_TEXT];
         wb_simulated_bundle_sum(bundle->model, NULL, sha256);
         wb_json_set_text(entry, "inputs_sha256", sha256);

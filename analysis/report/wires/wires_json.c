@@ -3,17 +3,132 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "analysis/keys/common.h"
+#include "analysis/keys/row.h"
 #include "analysis/report/numbers.h"
 #include "base/text.h"
 #include "base/units.h"
 
-static void put_peak(struct wb_json *object, const char *key, const struct wb_wires_peak *peak)
+/* --- keys --- */
+
+#define PEAK(member) WB_AT(struct wb_wires_peak, member)
+#define RUN(member) WB_AT(struct wb_wires_run, member)
+#define CASE(member) WB_AT(struct wb_wires_case, member)
+#define STRESS(member) WB_AT(struct wb_wires_stress, member)
+#define ROD(member) WB_AT(struct wb_wires_rod, member)
+
+static const struct wb_key peak_rows[] = {
+    {"von_mises_MPa", PEAK(stress), "MPa", "largest von Mises stress"},
+    {"at_mm", WB_FULL(struct wb_wires_peak, reference), "mm",
+     "its place in the straight wire: x, y, z"},
+};
+static WB_KEYS(peak, "stress_peak", "The largest stress of a part.");
+
+static const struct wb_key section_keys_rows[] = {
+    {"state", WB_AT(struct wb_field, state), "", "name of the model's step"},
+    {"section", TEXT, "", "kind of section", .choices = "longitudinal|cross"},
+    {"from_clamp_mm", WB_AT(struct wb_field, x) | UNKNOWN, "mm",
+     "place of a cross section; null: longitudinal"},
+    {"core", OBJECT | OPTIONAL, "", "largest stress of the core", &peak},
+    {"jacket", OBJECT | OPTIONAL, "", "largest stress of the jacket", &peak},
+};
+static WB_KEYS(section_keys, "section", "A section with stress fields.");
+
+static const struct wb_key run_keys_rows[] = {
+    {.of = &wb_simulation_state_keys},
+    {"elements", RUN(elements) | UNKNOWN, "", "number of elements"},
+    {"degrees_of_freedom", RUN(unknowns) | UNKNOWN, "", "number of unknowns"},
+    {"iterations", RUN(iterations) | UNKNOWN, "", "iterations of the equilibrium"},
+    {"cpu_s", RUN(simulation.cpu_s) | UNKNOWN, "s", "CPU time"},
+    {"peak_memory_MB", NUMBER | UNKNOWN, "MB", "largest memory of the process"},
+    {"slip_mm", NUMBER | OPTIONAL, "mm", "with friction: largest slip"},
+    {"slip_limit_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+     "with friction: limit of the assumption of small sliding"},
+    {"opening_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "with friction: largest opening"},
+    {"sha256", RUN(simulation.sha256) | OPTIONAL, "", "SHA-256 of force_deflection.csv"},
+    {"follower_force_N", RUN(force) | UNKNOWN | OPTIONAL, "N", "follower force"},
+    {"tip_mm", WB_FULL(struct wb_wires_run, tip) | UNKNOWN | OPTIONAL, "mm",
+     "place of the tip: x, y, z"},
+    {"tip_angle_degrees", RUN(tip_angle) | UNKNOWN | OPTIONAL, "degree", "slope angle at the tip"},
+    {"largest_distance_from_solid_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+     "largest distance of the axes of rod and solid"},
+    {"sections", OBJECT | LIST | OPTIONAL, "", "sections with stress fields", &section_keys},
+    {"tip_moved_at_most_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+     "with residual stress: largest distance of the tip from that of the model without"},
+};
+static WB_KEYS(run_keys, "comparison_run",
+               "A dataset of a case; the keys from `sha256` on are of a used one.");
+
+static const struct wb_key case_keys_rows[] = {
+    {"label", CASE(label), "", "name of the case in the report"},
+    {"model", CASE(model_name), "", "name of the model"},
+    {"inputs_sha256", CASE(datasets[WB_WIRES_SOLID].inputs_sha256), "",
+     "SHA-256 of the solid's inputs"},
+    {"wire3d", OBJECT | OPTIONAL, "", "dataset of the solid", &run_keys},
+    {"wire1d", OBJECT | OPTIONAL, "", "dataset of the rod", &run_keys},
+    {"cpu_of_rod_over_solid", NUMBER | UNKNOWN | OPTIONAL, "",
+     "CPU time of the rod over that of the solid"},
+};
+static WB_KEYS(case_keys, "comparison_case", "A case of the comparison.");
+
+static const struct wb_key stress_keys_rows[] = {
+    {"from_clamp_mm", STRESS(x), "mm", "place of the cross section"},
+    {"core", OBJECT | OPTIONAL, "", "largest stress of the core", &peak},
+    {"jacket", OBJECT | OPTIONAL, "", "largest stress of the jacket", &peak},
+    {"curvature_per_mm", NUMBER | UNKNOWN, "1/mm", "curvature of the exact rod there"},
+    {"E_kappa_r_MPa", STRESS(beam) | UNKNOWN, "MPa", "stress E kappa r of beam theory"},
+};
+static WB_KEYS(stress_keys, "elastic_stress", "Stresses of a cross section of the elastic solid.");
+
+static const struct wb_key rod_keys_rows[] = {
+    {"reached", ROD(reached), "", "the rod reached the force"},
+    {"tip_x_mm", ROD(x[WB_WIRES_POINTS - 1]) | UNKNOWN, "mm", "x of the tip"},
+    {"tip_y_mm", ROD(y[WB_WIRES_POINTS - 1]) | UNKNOWN, "mm", "y of the tip"},
+    {"tip_angle_degrees", ROD(tip_angle) | UNKNOWN, "degree", "slope angle at the tip"},
+    {"largest_distance_from_solid_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+     "largest distance of the axes of rod and solid"},
+    {"x_mm", WB_FULL(struct wb_wires_rod, x) | UNKNOWN, "mm", "x of the axis"},
+    {"y_mm", WB_FULL(struct wb_wires_rod, y) | UNKNOWN, "mm", "y of the axis"},
+    {"force_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N", "forces of the curve"},
+    {"deflection_mm", NUMBER | LIST | UNKNOWN | OPTIONAL, "mm", "deflections of the curve"},
+    {"angle_degrees", NUMBER | LIST | UNKNOWN | OPTIONAL, "degree", "slope angles of the curve"},
+};
+static WB_KEYS(rod_keys, "rod", "A rod under the same force.");
+
+static const struct wb_key fit_keys_rows[] = {
+    {"printed", OBJECT | OPTIONAL, "", "published properties", &wb_keys_ludwik},
+    {"problem", TEXT | OPTIONAL, "", "why there is no fit"},
+    {"properties", OBJECT | OPTIONAL, "", "fitted properties", &wb_keys_ludwik},
+    {"rms_over_largest_deflection", NUMBER | UNKNOWN | OPTIONAL, "",
+     "RMS error over the largest deflection"},
+    {"F_max_N", NUMBER | OPTIONAL, "N", "largest force"},
+    {"max_deflection_mm", NUMBER | OPTIONAL, "mm", "largest deflection"},
+    {"stopped_because", TEXT | OPTIONAL, "", "why the search ended"},
+    {"beam_runs", INTEGER | OPTIONAL, "", "computations of the beam"},
+    {"rod", OBJECT | OPTIONAL, "", "rod with the fitted properties", &rod_keys},
+};
+static WB_KEYS(fit_keys, "comparison_fit", "The homogenised law fitted to the solid.");
+
+static const struct wb_key wb_wires_json_keys_rows[] = {
+    {.of = &wb_numbers_head_keys},
+    {"jacket_modulus_per_percent_of_core_MPa", NUMBER, "MPa",
+     "change of the jacket's E by eq. 8 when the core's E changes by 1 %"},
+    {"cases", OBJECT | LIST, "", "cases", &case_keys},
+    {"elastic_stresses", OBJECT | LIST, "", "stresses of the elastic solid", &stress_keys},
+    {"exact_elastic_rod", OBJECT | OPTIONAL, "", "elastica", &rod_keys},
+    {"fit", OBJECT, "", "homogenised law fitted to the solid", &fit_keys},
+    {"printed_rod", OBJECT | OPTIONAL, "", "rod with the published properties", &rod_keys},
+    {"printed_collapse_force_N", NUMBER | UNKNOWN | OPTIONAL, "N",
+     "force at which that rod would collapse without hardening"},
+};
+WB_KEYS(wb_wires_json_keys, "report_of_comparison", "The report of a comparison campaign.");
+
+/* --- values --- */
+
+static void put_peak(struct wb_json *object, const char *key, const struct wb_wires_peak *largest)
 {
-    if (!isfinite(peak->stress))
-        return;
-    struct wb_json *const entry = wb_json_set_object(object, key);
-    wb_json_set_number(entry, "von_mises_MPa", peak->stress / WB_MPA);
-    wb_numbers_put_list(entry, "at_mm", peak->reference, 3, WB_MM);
+    if (isfinite(largest->stress))
+        WB_PUT(wb_json_set_object(object, key), &peak, struct wb_wires_peak, largest);
 }
 
 /* The largest stresses on every section that the dataset keeps. */
@@ -25,9 +140,9 @@ static void put_fields(struct wb_json *entry, const struct wb_fields *fields)
         const struct wb_wires_peak core = wb_wires_find_peak(field, 0);
         const struct wb_wires_peak jacket = wb_wires_find_peak(field, 1);
         struct wb_json *const item = wb_json_append_object(list);
-        wb_json_set_text(item, "state", field->state);
+        WB_PUT(item, &section_keys, struct wb_field, field);
         wb_json_set_text(item, "section", isnan(field->x) ? "longitudinal" : "cross");
-        wb_json_set_number(item, "from_clamp_mm", field->x / WB_MM);
+        WB_PUT(item, &section_keys, struct wb_field, field);
         put_peak(item, "core", &core);
         put_peak(item, "jacket", &jacket);
     }
@@ -37,10 +152,7 @@ static void put_usable(struct wb_json *entry, const struct wb_wires_results *res
                        const struct wb_wires_run *run, int index)
 {
     const struct wb_wires_run *const solid = wb_wires_solid_run(results, index);
-    wb_json_set_text(entry, "sha256", run->simulation.sha256);
-    wb_json_set_number(entry, "follower_force_N", run->force);
-    wb_numbers_put_list(entry, "tip_mm", run->tip, 3, WB_MM);
-    wb_json_set_number(entry, "tip_angle_degrees", run->tip_angle / WB_DEGREE);
+    WB_PUT(entry, &run_keys, struct wb_wires_run, run);
     if (solid && solid != run)
         wb_json_set_number(entry, "largest_distance_from_solid_mm",
                            wb_wires_distance(solid, run) / WB_MM);
@@ -67,10 +179,7 @@ static void put_run(struct wb_json *object, const struct wb_wires_results *resul
     struct wb_json *const entry =
         wb_json_set_object(object, wb_wires_command((enum wb_wires_solver)solver));
     wb_simulation_describe(entry, &item->datasets[solver], &run->simulation);
-    wb_json_set_number(entry, "elements", run->elements);
-    wb_json_set_number(entry, "degrees_of_freedom", run->unknowns);
-    wb_json_set_number(entry, "iterations", run->iterations);
-    wb_json_set_number(entry, "cpu_s", run->simulation.cpu_s);
+    WB_PUT(entry, &run_keys, struct wb_wires_run, run);
     wb_json_set_number(entry, "peak_memory_MB", run->memory_MB);
     if (isfinite(run->slip)) {
         wb_json_set_number(entry, "slip_mm", run->slip / WB_MM);
@@ -86,19 +195,14 @@ static void put_run(struct wb_json *object, const struct wb_wires_results *resul
 static void put_rod(struct wb_json *root, const char *key, const struct wb_wires_rod *rod,
                     const struct wb_wires_run *solid)
 {
-    const int last = WB_WIRES_POINTS - 1;
     if (!rod->done)
         return;
     struct wb_json *const entry = wb_json_set_object(root, key);
-    wb_json_set_boolean(entry, "reached", rod->reached);
-    wb_json_set_number(entry, "tip_x_mm", rod->x[last] / WB_MM);
-    wb_json_set_number(entry, "tip_y_mm", rod->y[last] / WB_MM);
-    wb_json_set_number(entry, "tip_angle_degrees", rod->tip_angle / WB_DEGREE);
+    WB_PUT(entry, &rod_keys, struct wb_wires_rod, rod);
     if (solid && rod->reached)
         wb_json_set_number(entry, "largest_distance_from_solid_mm",
                            wb_wires_rod_distance(solid, rod) / WB_MM);
-    wb_numbers_put_list(entry, "x_mm", rod->x, WB_WIRES_POINTS, WB_MM);
-    wb_numbers_put_list(entry, "y_mm", rod->y, WB_WIRES_POINTS, WB_MM);
+    WB_PUT(entry, &rod_keys, struct wb_wires_rod, rod);
     if (rod->n_curve < 2)
         return;
     wb_numbers_put_list(entry, "force_N", rod->force, rod->n_curve, 1.0);
@@ -138,11 +242,11 @@ static void put_stresses(struct wb_json *root, const struct wb_wires_results *re
     for (int i = 0; i < results->n_stresses; i++) {
         const struct wb_wires_stress *const stress = &results->stresses[i];
         struct wb_json *const entry = wb_json_append_object(list);
-        wb_json_set_number(entry, "from_clamp_mm", stress->x / WB_MM);
+        WB_PUT(entry, &stress_keys, struct wb_wires_stress, stress);
         put_peak(entry, "core", &stress->core);
         put_peak(entry, "jacket", &stress->jacket);
         wb_json_set_number(entry, "curvature_per_mm", stress->curvature * WB_MM);
-        wb_json_set_number(entry, "E_kappa_r_MPa", stress->beam / WB_MPA);
+        WB_PUT(entry, &stress_keys, struct wb_wires_stress, stress);
     }
 }
 
@@ -155,9 +259,7 @@ static void put_cases(struct wb_json *root, const struct wb_wires_results *resul
         if (!item->model)
             continue;
         struct wb_json *const entry = wb_json_append_object(list);
-        wb_json_set_text(entry, "label", item->label);
-        wb_json_set_text(entry, "model", item->model_name);
-        wb_json_set_text(entry, "inputs_sha256", item->datasets[WB_WIRES_SOLID].inputs_sha256);
+        WB_PUT(entry, &case_keys, struct wb_wires_case, item);
         for (int k = 0; k < WB_WIRES_SOLVERS; k++)
             put_run(entry, results, i, k);
         if (item->datasets[WB_WIRES_ROD].wanted)

@@ -2,6 +2,7 @@
 #ifndef WB_ANALYSIS_REPORT_WIRES_WIRES_KIND_H
 #define WB_ANALYSIS_REPORT_WIRES_WIRES_KIND_H
 
+#include "analysis/keys/keys.h"
 #include "analysis/report/kind.h"
 #include "analysis/report/wires/wires_results.h"
 
@@ -19,6 +20,7 @@ enum {
 extern const struct wb_figures_row wb_wires_figures[WB_WIRES_FIGURES];
 wb_kind_pages wb_wires_pages_build;
 wb_kind_json wb_wires_json_build;
+extern const struct wb_keys wb_wires_json_keys; /* of its report.json */
 
 /* The first page, without its figure. */
 void wb_wires_found_put(struct wb_document *document, const struct wb_wires_results *results);
