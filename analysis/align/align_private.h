@@ -18,6 +18,7 @@
 #include "analysis/align/frame.h"
 #include "analysis/align/markers.h"
 #include "analysis/dataset/dataset.h"
+#include "analysis/keys/keys.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "base/status.h"
@@ -185,6 +186,9 @@ void wb_align_describe_holds(struct wb_align *align);
 double wb_align_level_uncertainty(const struct wb_align *align);
 
 /* --- the document --- */
+
+/* Keys of `bending_plane` and `stage` of the checks. */
+extern const struct wb_keys wb_align_rows_plane, wb_align_rows_stage;
 
 /* Logs a warning and lists it in the dataset. */
 void wb_align_warn(struct wb_align *align, const char *format, ...)

@@ -10,6 +10,7 @@
 #include "analysis/align/align_private.h"
 #include "analysis/align/axis_fit.h"
 #include "analysis/dataset/fit.h"
+#include "analysis/keys/row.h"
 #include "base/memory.h"
 #include "base/units.h"
 
@@ -45,6 +46,24 @@ static double typical_period(const struct wb_align *align)
     return period;
 }
 
+#define FRAME(member) WB_AT(struct wb_bench_frame, member)
+
+static const struct wb_key wb_align_rows_plane_rows[] = {
+    {"planarity_rms_mm", FRAME(planarity) | ROUNDED, "mm",
+     "RMS distance of the markers from the bending plane"},
+    {"plane_tilt_deg", FRAME(plane_tilt) | ROUNDED, "degree",
+     "angle of the fitted plane's normal to the horizontal"},
+    {"clamp_motion_mm", FRAME(motion) | ROUNDED, "mm", "travel of the clamp's marker"},
+    {"clamp_path_rms_mm", FRAME(straightness) | ROUNDED, "mm",
+     "RMS distance of the clamp's path from a straight line"},
+    {"vertical_tilt_deg", FRAME(tilt) | ROUNDED, "degree",
+     "angle between the clamp's motion and the cameras' up axis"},
+    {"vertical_uncertainty_mrad", NUMBER | UNKNOWN, "mrad",
+     "standard uncertainty of the vertical's direction"},
+    {"vertical", TEXT, "", "source of the vertical's direction"},
+};
+WB_KEYS(wb_align_rows_plane, "bending_plane", "The plane in which the wire bends.");
+
 static void describe_markers(struct wb_align *align)
 {
     const struct wb_marker_tracks *const tracks = &align->tracks;
@@ -58,11 +77,7 @@ static void describe_markers(struct wb_align *align)
     wb_json_set_integer(object, "model_filled_left_out", (int64_t)align->cloud.n_filled);
     wb_json_set_integer(object, "chain_searches", (int64_t)tracks->n_searches);
     struct wb_json *const plane = wb_json_set_object(align->checks, "bending_plane");
-    wb_align_set(plane, "planarity_rms_mm", frame->planarity / WB_MM);
-    wb_align_set(plane, "plane_tilt_deg", frame->plane_tilt / WB_DEGREE);
-    wb_align_set(plane, "clamp_motion_mm", frame->motion / WB_MM);
-    wb_align_set(plane, "clamp_path_rms_mm", frame->straightness / WB_MM);
-    wb_align_set(plane, "vertical_tilt_deg", frame->tilt / WB_DEGREE);
+    WB_PUT(plane, &wb_align_rows_plane, struct wb_bench_frame, frame);
     wb_align_set(plane, "vertical_uncertainty_mrad", frame->up_uncertainty * 1e3);
     wb_json_set_text(plane, "vertical",
                      frame->up_from_motion ? "direction of the clamp's motion"
@@ -559,18 +574,35 @@ static bool fit_stage(const struct wb_align *align, const struct pair *pairs, si
     return true;
 }
 
+#define FIT(member) WB_AT(struct stage_fit, member)
+
+static const struct wb_key wb_align_rows_stage_rows[] = {
+    {"reports", INTEGER | OPTIONAL, "", "position reports of the stage that were compared"},
+    {"slope", FIT(slope) | ROUNDED | OPTIONAL, "", "measured over commanded travel"},
+    {"slope_uncertainty", FIT(slope_deviation) | ROUNDED | UNKNOWN | OPTIONAL, "",
+     "standard uncertainty of the slope"},
+    {"offset_mm", FIT(offset) | ROUNDED | OPTIONAL, "mm",
+     "measured travel at a commanded travel of zero"},
+    {"report_lag_ms", FIT(lag) | ROUNDED | OPTIONAL, "ms", "delay of the stage's reports"},
+    {"residual_rms_mm", FIT(rms) | ROUNDED | OPTIONAL, "mm",
+     "RMS deviation of the travel from the line"},
+    {"largest_residual_mm", FIT(largest) | ROUNDED | OPTIONAL, "mm",
+     "largest deviation from the line"},
+    {"not_returned_mm", FIT(returned) | ROUNDED | UNKNOWN | OPTIONAL, "mm",
+     "measured less commanded travel after the test, less the same before it"},
+    {"lost_steps", FLAG, "", "the stage seems to have lost steps"},
+};
+WB_KEYS(
+    wb_align_rows_stage, "stage_check",
+    "Measured over commanded travel of the stage; only `lost_steps` where the clamp did not follow "
+    "the stage.");
+
 static void describe_stage(struct wb_align *align, const struct stage_fit *fit, size_t n)
 {
     struct wb_json *const object = wb_json_set_object(align->checks, "stage");
     const bool lost = lost_steps(align, fit);
     wb_json_set_integer(object, "reports", (int64_t)n);
-    wb_align_set(object, "slope", fit->slope);
-    wb_align_set(object, "slope_uncertainty", fit->slope_deviation);
-    wb_align_set(object, "offset_mm", fit->offset / WB_MM);
-    wb_align_set(object, "report_lag_ms", fit->lag * 1e3);
-    wb_align_set(object, "residual_rms_mm", fit->rms / WB_MM);
-    wb_align_set(object, "largest_residual_mm", fit->largest / WB_MM);
-    wb_align_set(object, "not_returned_mm", fit->returned / WB_MM);
+    WB_PUT(object, &wb_align_rows_stage, struct stage_fit, fit);
     wb_json_set_boolean(object, "lost_steps", lost);
     if (lost)
         wb_align_warn(

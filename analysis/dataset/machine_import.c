@@ -8,6 +8,7 @@
 
 #include "analysis/dataset/fit.h"
 #include "analysis/keys/common.h"
+#include "analysis/keys/row.h"
 #include "base/compress.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -218,6 +219,55 @@ static void count_gaps(struct import *import)
 
 /* --- the document --- */
 
+#define IMPORT(member) WB_AT(struct import, member)
+
+static const struct wb_key column_keys_rows[] = {
+    {"column", INTEGER, "", "number of the column, from 1"},
+    {"header", TEXT, "", "name of the column in the file"},
+    {"unit", TEXT, "", "unit of the column"},
+};
+static WB_KEYS(column_keys, "import_column", "A column of the imported file.");
+
+static const struct wb_key columns_rows[] = {
+    {"time", OBJECT | OPTIONAL, "", "column of time", &column_keys},
+    {"force", OBJECT | OPTIONAL, "", "column of force", &column_keys},
+    {"travel", OBJECT | OPTIONAL, "", "column of travel or elongation", &column_keys},
+    {"strain", OBJECT | OPTIONAL, "", "column of strain", &column_keys},
+};
+static WB_KEYS(columns, "import_columns", "The columns of the imported file that are used.");
+
+static const struct wb_key wb_machine_import_keys_rows[] = {
+    {"file", TEXT, "", "name of the original file"},
+    {"bytes", IMPORT(bytes), "", "size of the original file"},
+    {"sha256", IMPORT(hash), "", "SHA-256 of the original file"},
+    {"encoding", TEXT, "", "character encoding"},
+    {"byte_order_mark", IMPORT(table.byte_order_mark), "",
+     "the file begins with a byte order mark"},
+    {"delimiter", TEXT, "", "character between fields, `tab` or `blanks`"},
+    {"decimal_sign", TEXT, "", "decimal sign"},
+    {"header_line", IMPORT(table.header_line), "", "line with the names of the columns; 0: none"},
+    {"columns", OBJECT, "", "columns that are used", &columns},
+    {"lines", IMPORT(report.lines), "", "lines of the file"},
+    {"rows", IMPORT(report.rows), "", "rows of the dataset"},
+    {"empty_rows", IMPORT(report.empty), "", "lines without force and travel"},
+    {"partial_rows", IMPORT(report.partial), "", "rows left out because a value is missing"},
+    {"rows_without_force", IMPORT(report.without_force), "", "of these, rows without a force"},
+    {"rows_without_travel", IMPORT(report.without_travel), "", "of these, rows without a travel"},
+    {"rows_without_time", IMPORT(report.without_time), "", "of these, rows without a time"},
+    {"largest_force_N", IMPORT(report.largest_force) | UNKNOWN, "N",
+     "largest force of all rows, as in the file"},
+    {"largest_travel_mm", IMPORT(report.largest_travel) | UNKNOWN, "mm",
+     "largest travel of all rows, as in the file"},
+    {"gaps", IMPORT(report.gaps), "", "steps of time longer than five usual ones"},
+    {"longest_gap_s", IMPORT(report.longest_gap) | UNKNOWN, "s", "longest step of time"},
+    {"cut", IMPORT(report.cut), "", "the file ends within a row or a character"},
+    {"last_line_has_no_end", IMPORT(table.ends_without_end), "",
+     "the last line has no end of line and may be cut"},
+    {"force_turned", FLAG, "", "the machine counts force downwards; the sign was changed"},
+    {"travel_turned", FLAG, "", "the machine counts travel downwards; the sign was changed"},
+};
+WB_KEYS(wb_machine_import_keys, "force_import", "The file of a testing machine.");
+
 static void set_column(struct wb_json *object, const struct import *import, enum wb_measured m)
 {
     const int column = import->columns.column[m];
@@ -232,6 +282,7 @@ static void set_column(struct wb_json *object, const struct import *import, enum
 static void set_document(const struct import *import)
 {
     const struct wb_machine_import_report *const report = &import->report;
+    const struct wb_keys *const keys = &wb_machine_import_keys;
     struct wb_json *const document = import->dataset->document;
     const struct wb_text_table *const table = &import->table;
     char delimiter[2] = {table->delimiter, '\0'}, decimal[2] = {table->decimal, '\0'};
@@ -239,32 +290,19 @@ static void set_document(const struct import *import)
     wb_keys_put_tool(document, "wirebench import force");
     struct wb_json *const from = wb_json_set_object(document, "import");
     wb_json_set_text(from, "file", wb_file_name(import->from->path));
-    wb_json_set_integer(from, "bytes", (int64_t)import->bytes);
-    wb_json_set_text(from, "sha256", import->hash);
+    WB_PUT(from, keys, struct import, import);
     wb_json_set_text(from, "encoding", wb_text_encoding_name(table->encoding));
-    wb_json_set_boolean(from, "byte_order_mark", table->byte_order_mark);
+    WB_PUT(from, keys, struct import, import);
     wb_json_set_text(from, "delimiter",
                      table->delimiter == '\t'  ? "tab"
                      : table->delimiter == ' ' ? "blanks"
                                                : delimiter);
     wb_json_set_text(from, "decimal_sign", decimal);
-    wb_json_set_integer(from, "header_line", table->header_line);
-    struct wb_json *const columns = wb_json_set_object(from, "columns");
+    WB_PUT(from, keys, struct import, import);
+    struct wb_json *const used = wb_json_set_object(from, "columns");
     for (int m = 0; m < WB_MEASURED_COUNT; m++)
-        set_column(columns, import, (enum wb_measured)m);
-    wb_json_set_integer(from, "lines", (int64_t)report->lines);
-    wb_json_set_integer(from, "rows", (int64_t)report->rows);
-    wb_json_set_integer(from, "empty_rows", (int64_t)report->empty);
-    wb_json_set_integer(from, "partial_rows", (int64_t)report->partial);
-    wb_json_set_integer(from, "rows_without_force", (int64_t)report->without_force);
-    wb_json_set_integer(from, "rows_without_travel", (int64_t)report->without_travel);
-    wb_json_set_integer(from, "rows_without_time", (int64_t)report->without_time);
-    wb_json_set_number(from, "largest_force_N", report->largest_force);
-    wb_json_set_number(from, "largest_travel_mm", report->largest_travel / WB_MM);
-    wb_json_set_integer(from, "gaps", report->gaps);
-    wb_json_set_number(from, "longest_gap_s", report->longest_gap);
-    wb_json_set_boolean(from, "cut", report->cut);
-    wb_json_set_boolean(from, "last_line_has_no_end", table->ends_without_end);
+        set_column(used, import, (enum wb_measured)m);
+    WB_PUT(from, keys, struct import, import);
     wb_json_set_boolean(from, "force_turned", import->force_sign < 0);
     wb_json_set_boolean(from, "travel_turned", import->travel_sign < 0);
     wb_json_set_boolean(document, "complete", !report->cut && report->gaps == 0);

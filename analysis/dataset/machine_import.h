@@ -11,6 +11,7 @@
 #include "analysis/dataset/dataset.h"
 #include "analysis/dataset/machine.h"
 #include "analysis/dataset/test_piece.h"
+#include "analysis/keys/keys.h"
 #include "base/reason.h"
 #include "base/text_table.h"
 
@@ -21,6 +22,9 @@ struct wb_machine_import {
     const struct wb_machine *machine;
     const struct wb_test_piece *piece; /* read for the machine's kind */
 };
+
+/* Keys of `import` in dataset.json. */
+extern const struct wb_keys wb_machine_import_keys;
 
 /* Findings in the file, and the rows left out. */
 struct wb_machine_import_report {

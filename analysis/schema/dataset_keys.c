@@ -3,6 +3,7 @@
 #include "analysis/schema/tables.h"
 
 #include "analysis/align/align_keys.h"
+#include "analysis/dataset/machine_import.h"
 
 static const struct wb_key test_rows[] = {
     {"wire", TEXT, "", "name of the product"},
@@ -56,49 +57,6 @@ static const struct wb_key piece_rows[] = {
 static WB_KEYS(piece, "test_piece",
                "What is known of the specimen of a testing machine besides `test`.");
 
-static const struct wb_key column_rows[] = {
-    {"column", INTEGER, "", "number of the column, from 1"},
-    {"header", TEXT, "", "name of the column in the file"},
-    {"unit", TEXT, "", "unit of the column"},
-};
-static WB_KEYS(column, "import_column", "A column of the imported file.");
-
-static const struct wb_key columns_rows[] = {
-    {"time", OBJECT | OPTIONAL, "", "column of time", &column},
-    {"force", OBJECT | OPTIONAL, "", "column of force", &column},
-    {"travel", OBJECT | OPTIONAL, "", "column of travel or elongation", &column},
-    {"strain", OBJECT | OPTIONAL, "", "column of strain", &column},
-};
-static WB_KEYS(columns, "import_columns", "The columns of the imported file that are used.");
-
-static const struct wb_key import_rows[] = {
-    {"file", TEXT, "", "name of the original file"},
-    {"bytes", INTEGER, "", "size of the original file"},
-    {"sha256", TEXT, "", "SHA-256 of the original file"},
-    {"encoding", TEXT, "", "character encoding"},
-    {"byte_order_mark", FLAG, "", "the file begins with a byte order mark"},
-    {"delimiter", TEXT, "", "character between fields, `tab` or `blanks`"},
-    {"decimal_sign", TEXT, "", "decimal sign"},
-    {"header_line", INTEGER, "", "line with the names of the columns; 0: none"},
-    {"columns", OBJECT, "", "columns that are used", &columns},
-    {"lines", INTEGER, "", "lines of the file"},
-    {"rows", INTEGER, "", "rows of the dataset"},
-    {"empty_rows", INTEGER, "", "lines without force and travel"},
-    {"partial_rows", INTEGER, "", "rows left out because a value is missing"},
-    {"rows_without_force", INTEGER, "", "of these, rows without a force"},
-    {"rows_without_travel", INTEGER, "", "of these, rows without a travel"},
-    {"rows_without_time", INTEGER, "", "of these, rows without a time"},
-    {"largest_force_N", NUMBER | UNKNOWN, "N", "largest force of all rows, as in the file"},
-    {"largest_travel_mm", NUMBER | UNKNOWN, "mm", "largest travel of all rows, as in the file"},
-    {"gaps", INTEGER, "", "steps of time longer than five usual ones"},
-    {"longest_gap_s", NUMBER | UNKNOWN, "s", "longest step of time"},
-    {"cut", FLAG, "", "the file ends within a row or a character"},
-    {"last_line_has_no_end", FLAG, "", "the last line has no end of line and may be cut"},
-    {"force_turned", FLAG, "", "the machine counts force downwards; the sign was changed"},
-    {"travel_turned", FLAG, "", "the machine counts travel downwards; the sign was changed"},
-};
-static WB_KEYS(import, "force_import", "The file of a testing machine.");
-
 static const struct wb_key common_rows[] = {
     {"schema", INTEGER, "", "layout of the file, 1"},
     {"name", TEXT, "", "name of the dataset"},
@@ -115,7 +73,7 @@ static WB_KEYS(aligned, "dataset_of_recording", "The dataset of a recording, by 
 static const struct wb_key imported_rows[] = {
     {.of = &common},
     {"tool", OBJECT, "", "program that imported the file", &wb_keys_tool},
-    {"import", OBJECT, "", "the file", &import},
+    {"import", OBJECT, "", "the file", &wb_machine_import_keys},
     {"complete", FLAG, "", "false: the file is cut, or there are gaps in time"},
     {"machine", OBJECT, "", "testing machine", &wb_keys_machine},
     {"test_piece", OBJECT, "", "what else is known of the specimen", &piece},
