@@ -49,18 +49,18 @@ static double typical_period(const struct wb_align *align)
 #define FRAME(member) WB_AT(struct wb_bench_frame, member)
 
 static const struct wb_key wb_align_rows_plane_rows[] = {
-    {"planarity_rms_mm", FRAME(planarity) | ROUNDED, "mm",
+    {"planarity_rms_mm", FRAME(planarity) | ROUNDED,
      "RMS distance of the markers from the bending plane"},
-    {"plane_tilt_deg", FRAME(plane_tilt) | ROUNDED, "degree",
+    {"plane_tilt_deg", FRAME(plane_tilt) | ROUNDED,
      "angle of the fitted plane's normal to the horizontal"},
-    {"clamp_motion_mm", FRAME(motion) | ROUNDED, "mm", "travel of the clamp's marker"},
-    {"clamp_path_rms_mm", FRAME(straightness) | ROUNDED, "mm",
+    {"clamp_motion_mm", FRAME(motion) | ROUNDED, "travel of the clamp's marker"},
+    {"clamp_path_rms_mm", FRAME(straightness) | ROUNDED,
      "RMS distance of the clamp's path from a straight line"},
-    {"vertical_tilt_deg", FRAME(tilt) | ROUNDED, "degree",
+    {"vertical_tilt_deg", FRAME(tilt) | ROUNDED,
      "angle between the clamp's motion and the cameras' up axis"},
-    {"vertical_uncertainty_mrad", NUMBER | UNKNOWN, "mrad",
+    {"vertical_uncertainty_mrad", NUMBER | UNKNOWN,
      "standard uncertainty of the vertical's direction"},
-    {"vertical", TEXT, "", "source of the vertical's direction"},
+    {"vertical", TEXT, "source of the vertical's direction"},
 };
 WB_KEYS(wb_align_rows_plane, "bending_plane", "The plane in which the wire bends.");
 
@@ -577,20 +577,18 @@ static bool fit_stage(const struct wb_align *align, const struct pair *pairs, si
 #define FIT(member) WB_AT(struct stage_fit, member)
 
 static const struct wb_key wb_align_rows_stage_rows[] = {
-    {"reports", INTEGER | OPTIONAL, "", "position reports of the stage that were compared"},
-    {"slope", FIT(slope) | ROUNDED | OPTIONAL, "", "measured over commanded travel"},
-    {"slope_uncertainty", FIT(slope_deviation) | ROUNDED | UNKNOWN | OPTIONAL, "",
+    {"reports", INTEGER | OPTIONAL, "position reports of the stage that were compared"},
+    {"slope", FIT(slope) | ROUNDED | OPTIONAL, "measured over commanded travel"},
+    {"slope_uncertainty", FIT(slope_deviation) | ROUNDED | UNKNOWN | OPTIONAL,
      "standard uncertainty of the slope"},
-    {"offset_mm", FIT(offset) | ROUNDED | OPTIONAL, "mm",
+    {"offset_mm", FIT(offset) | ROUNDED | OPTIONAL,
      "measured travel at a commanded travel of zero"},
-    {"report_lag_ms", FIT(lag) | ROUNDED | OPTIONAL, "ms", "delay of the stage's reports"},
-    {"residual_rms_mm", FIT(rms) | ROUNDED | OPTIONAL, "mm",
-     "RMS deviation of the travel from the line"},
-    {"largest_residual_mm", FIT(largest) | ROUNDED | OPTIONAL, "mm",
-     "largest deviation from the line"},
-    {"not_returned_mm", FIT(returned) | ROUNDED | UNKNOWN | OPTIONAL, "mm",
+    {"report_lag_ms", FIT(lag) | ROUNDED | OPTIONAL, "delay of the stage's reports"},
+    {"residual_rms_mm", FIT(rms) | ROUNDED | OPTIONAL, "RMS deviation of the travel from the line"},
+    {"largest_residual_mm", FIT(largest) | ROUNDED | OPTIONAL, "largest deviation from the line"},
+    {"not_returned_mm", FIT(returned) | ROUNDED | UNKNOWN | OPTIONAL,
      "measured less commanded travel after the test, less the same before it"},
-    {"lost_steps", FLAG, "", "the stage seems to have lost steps"},
+    {"lost_steps", FLAG, "the stage seems to have lost steps"},
 };
 WB_KEYS(
     wb_align_rows_stage, "stage_check",

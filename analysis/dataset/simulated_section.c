@@ -39,68 +39,66 @@ static void add_rows(struct wb_dataset *dataset, const struct wb_section_run *ru
 #define POINT(member) WB_AT(struct wb_section_homogenise_point, member)
 
 static const struct wb_key section_energy_rows[] = {
-    {"external_J", NUMBER, "J", "work of the tip's force and of the weight"},
-    {"wires_J", NUMBER, "J", "stored and plastic work of the wires"},
-    {"tape_J", NUMBER, "J", "stored and plastic work of the tape"},
-    {"cohesive_J", NUMBER, "J", "energy stored in the bond"},
-    {"friction_J", NUMBER, "J",
+    {"external_J", NUMBER, "work of the tip's force and of the weight"},
+    {"wires_J", NUMBER, "stored and plastic work of the wires"},
+    {"tape_J", NUMBER, "stored and plastic work of the tape"},
+    {"cohesive_J", NUMBER, "energy stored in the bond"},
+    {"friction_J", NUMBER,
      "energy dissipated by friction, with what contacts store before they slip"},
-    {"imbalance_J", NUMBER, "J", "external work less all other energies"},
+    {"imbalance_J", NUMBER, "external work less all other energies"},
 };
 static WB_KEYS(section_energy, "energy_of_section", "Energies at the last row.");
 
 static const struct wb_key section_largest_rows[] = {
-    {"residual", RUN(residual) | UNKNOWN, "", "residual over the largest force"},
-    {"imbalance_over_external", RUN(imbalance) | UNKNOWN, "", "imbalance over the external work"},
-    {"contact_balance_missing", RUN(missing) | UNKNOWN, "",
+    {"residual", RUN(residual) | UNKNOWN, "residual over the largest force"},
+    {"imbalance_over_external", RUN(imbalance) | UNKNOWN, "imbalance over the external work"},
+    {"contact_balance_missing", RUN(missing) | UNKNOWN,
      "load in the plane that contact forces do not balance, over the largest load"},
-    {"tape_plastic_strain", RUN(tape_plastic), "", "plastic strain of the tape"},
+    {"tape_plastic_strain", RUN(tape_plastic), "plastic strain of the tape"},
 };
 static WB_KEYS(section_largest, "largest_of_section", "Largest values of the run.");
 
 static const struct wb_key elastic_rows[] = {
-    {"length_mm", RIGIDITY(length), "mm", "length: half, once or twice the bundle's"},
-    {"flexural_rigidity_N_mm2", RIGIDITY(rigidity), "N mm2",
-     "flexural rigidity of the homogenised beam"},
-    {"newmark_alpha_L", RIGIDITY(alpha) | UNKNOWN, "",
+    {"length_mm", RIGIDITY(length), "length: half, once or twice the bundle's"},
+    {"flexural_rigidity_N_mm2", RIGIDITY(rigidity), "flexural rigidity of the homogenised beam"},
+    {"newmark_alpha_L", RIGIDITY(alpha) | UNKNOWN,
      "alpha L of Newmark's theory; null: no slip gives the rigidity"},
 };
 static WB_KEYS(elastic, "elastic_beam", "The elastic rigidity at one length.");
 
 static const struct wb_key curve_rows[] = {
-    {"curvature_1_m", POINT(curvature), "1/m", "curvature"},
-    {"moment_N_mm", POINT(moment), "N mm", "moment"},
-    {"secant_rigidity_N_mm2", NUMBER | UNKNOWN, "N mm2", "moment over curvature"},
+    {"curvature_1_m", POINT(curvature), "curvature"},
+    {"moment_N_mm", POINT(moment), "moment"},
+    {"secant_rigidity_N_mm2", NUMBER | UNKNOWN, "moment over curvature"},
 };
 static WB_KEYS(curve, "beam_moment", "A point of the moment curve.");
 
 static const struct wb_key beam_rows[] = {
-    {"elastic", OBJECT | LIST, "", "rigidity at half, once and twice the length", &elastic},
-    {"moment_curvature", OBJECT | LIST, "", "moment over curvature", &curve},
+    {"elastic", OBJECT | LIST, "rigidity at half, once and twice the length", &elastic},
+    {"moment_curvature", OBJECT | LIST, "moment over curvature", &curve},
 };
 static WB_KEYS(
     beam, "homogenised_beam",
     "The beam that bends like the bundle; it holds for this length and these ends only.");
 
 static const struct wb_key wb_simulated_section_keys_rows[] = {
-    {"bending", TEXT, "", "kind of bending: planar, without twist"},
-    {"friction_used", RUN(friction), "", "friction coefficient of the computation"},
-    {"friction_is_mean_of_decay", RUN(is_mean), "",
+    {"bending", TEXT, "kind of bending: planar, without twist"},
+    {"friction_used", RUN(friction), "friction coefficient of the computation"},
+    {"friction_is_mean_of_decay", RUN(is_mean),
      "it is the geometric mean of a static and a kinetic coefficient"},
-    {"mirrored", RUN(is_mirrored), "", "mirror images share unknowns"},
-    {"elements_along", RUN(elements), "", "elements along the bundle"},
-    {"unknowns", RUN(unknowns), "", "unknowns of all stations"},
-    {"increments", RUN(increments), "", "increments of the loading"},
-    {"iterations", RUN(iterations), "", "iterations of the equilibrium"},
-    {"energy", OBJECT | OPTIONAL, "", "energies at the last row", &section_energy},
-    {"largest", WB_HERE(struct wb_section_run), "", "largest values of the run", &section_largest},
-    {"homogenised_beam_of_this_length_and_these_ends", OBJECT, "", "beam that bends alike", &beam},
-    {"converged", RUN(converged), "", "the whole loading was computed"},
-    {"stopped", RUN(stopped), "", "stopped by Ctrl-C"},
-    {"zero_force_N", RUN(zero_force) | UNKNOWN, "N",
-     "vertical force that `force_N` is counted from"},
-    {"wall_s", WB_AT(struct wb_simulated_section, wall), "s", "time of the computation"},
-    {"cpu_s", WB_AT(struct wb_simulated_section, cpu), "s", "CPU time of the computation"},
+    {"mirrored", RUN(is_mirrored), "mirror images share unknowns"},
+    {"elements_along", RUN(elements), "elements along the bundle"},
+    {"unknowns", RUN(unknowns), "unknowns of all stations"},
+    {"increments", RUN(increments), "increments of the loading"},
+    {"iterations", RUN(iterations), "iterations of the equilibrium"},
+    {"energy", OBJECT | OPTIONAL, "energies at the last row", &section_energy},
+    {"largest", WB_HERE(struct wb_section_run), "largest values of the run", &section_largest},
+    {"homogenised_beam_of_this_length_and_these_ends", OBJECT, "beam that bends alike", &beam},
+    {"converged", RUN(converged), "the whole loading was computed"},
+    {"stopped", RUN(stopped), "stopped by Ctrl-C"},
+    {"zero_force_N", RUN(zero_force) | UNKNOWN, "vertical force that `force_N` is counted from"},
+    {"wall_s", WB_AT(struct wb_simulated_section, wall), "time of the computation"},
+    {"cpu_s", WB_AT(struct wb_simulated_section, cpu), "CPU time of the computation"},
 };
 WB_KEYS(wb_simulated_section_keys, "section_keys", "");
 

@@ -9,41 +9,75 @@
 #include "analysis/keys/row.h"
 #include "base/units.h"
 
-/* SI value of one unit of a row; 1 of units that are SI. */
+/* Units, and the ends of keys that name them; of several that fit the first counts. */
+static const struct {
+    const char *end, *name;
+    double scale; /* SI value of one unit */
+} units[] = {
+    {"fracture_energy_N_mm", "N/mm", WB_N_PER_MM},
+    {"_N_mm2", "N mm2", WB_NMM2},
+    {"_N_mm3", "N/mm3", WB_N_PER_MM3},
+    {"_N_mm", "N mm", WB_NMM},
+    {"_Nmm2", "N mm2", WB_NMM2},
+    {"_Nmm", "N mm", WB_NMM},
+    {"_Nm", "N m", 1.0},
+    {"_mm_N", "mm/N", WB_MM},
+    {"_mm_s", "mm/s", WB_MM},
+    {"_mJ_per_m", "mJ/m", WB_MJ},
+    {"_mJ_per_s", "mJ/s", WB_MJ},
+    {"_per_mm", "1/mm", 1e3},
+    {"_1_mm", "1/mm", 1e3},
+    {"_1_m", "1/m", 1.0},
+    {"_1_s", "1/s", 1.0},
+    {"_per_s", "1/s", 1.0},
+    {"_g_cm3", "g/cm3", WB_G_PER_CM3},
+    {"_kg_m", "kg/m", 1.0},
+    {"_g_m", "g/m", WB_G},
+    {"_m_s2", "m/s2", 1.0},
+    {"_mm2", "mm2", WB_MM *WB_MM},
+    {"_mm", "mm", WB_MM},
+    {"_ms", "ms", 1e-3},
+    {"_mN", "mN", WB_MN},
+    {"_mJ", "mJ", WB_MJ},
+    {"_MPa", "MPa", WB_MPA},
+    {"_MB", "MB", 1e6},
+    {"_mrad", "mrad", 1e-3},
+    {"_rad", "rad", 1.0},
+    {"_deg", "degree", WB_DEGREE},
+    {"_degrees", "degree", WB_DEGREE},
+    {"_ppm", "ppm", WB_PPM},
+    {"_percent", "%", WB_PERCENT},
+    {"_N", "N", 1.0},
+    {"_J", "J", 1.0},
+    {"_g", "g", WB_G},
+    {"_s", "s", 1.0},
+};
+
+const char *wb_keys_unit(const struct wb_key *row)
+{
+    const size_t length = strlen(row->key);
+    for (size_t i = 0; i < WB_COUNT(units) && !row->unit; i++) {
+        const size_t n = strlen(units[i].end);
+        if (length >= n && strcmp(row->key + length - n, units[i].end) == 0)
+            return units[i].name;
+    }
+    return row->unit ? row->unit : "";
+}
+
 static double scale_of(const char *unit)
 {
-    static const struct {
-        const char *unit;
-        double scale;
-    } scales[] = {
-        {"mm", WB_MM},         {"mm2", WB_MM * WB_MM},  {"ms", 1e-3},
-        {"mN", WB_MN},         {"N mm", WB_NMM},        {"N mm2", WB_NMM2},
-        {"mJ", WB_MJ},         {"mJ/s", WB_MJ},         {"MPa", WB_MPA},
-        {"N/mm", WB_N_PER_MM}, {"N/mm3", WB_N_PER_MM3}, {"g", WB_G},
-        {"g/m", WB_G},         {"mm/s", WB_MM},         {"g/cm3", WB_G_PER_CM3},
-        {"%", WB_PERCENT},     {"ppm", WB_PPM},         {"degree", WB_DEGREE},
-        {"MB", 1e6},
-    };
-    for (size_t i = 0; i < WB_COUNT(scales); i++) {
-        if (strcmp(scales[i].unit, unit) == 0)
-            return scales[i].scale;
+    for (size_t i = 0; i < WB_COUNT(units); i++) {
+        if (strcmp(units[i].name, unit) == 0)
+            return units[i].scale;
     }
     return 1.0;
 }
 
 /* --- values --- */
 
-/* `unit`: of the object, for rows without one. */
-static double number_at(const struct wb_key *row, const char *at, const char *unit)
+static double number_at(const char *at, const char *unit)
 {
-    switch (row->place.form) {
-    case WB_KEY_DOUBLE:
-        return *(const double *)(const void *)at / scale_of(row->unit[0] ? row->unit : unit);
-    case WB_KEY_INT:
-        return *(const int *)(const void *)at;
-    default:
-        return (double)*(const int64_t *)(const void *)at;
-    }
+    return *(const double *)(const void *)at / scale_of(unit);
 }
 
 static double rounded(double value)
@@ -83,7 +117,7 @@ static const char *text_at(const struct wb_key *row, const char *at, char word[8
 
 struct walk {
     struct wb_json *object;
-    const char *in; /* NULL: places in any struct are meant */
+    const char *in;
     const char *from;
     const char *unit; /* of the object */
     int row;          /* number of the current row, from 1 */
@@ -98,10 +132,6 @@ static bool has_row(const struct wb_json *object, const struct wb_key *row)
 {
     if (row->key)
         return wb_json_get(object, row->key);
-    for (size_t i = 0; row->of && i < row->of->n; i++) {
-        if (has_row(object, &row->of->rows[i]))
-            return true;
-    }
     for (size_t i = 0; row->settings && i < row->settings->n; i++) {
         if (wb_json_get(object, row->settings->rows[i].name))
             return true;
@@ -118,20 +148,18 @@ static void put_list(struct wb_json *array, const struct wb_key *row, const char
     if (place->is_pointer)
         item = *(const char *const *)(const void *)item;
     for (size_t i = 0; i < n; i++, item += place->step) {
-        char word[80];
         if (row->of)
-            put_all(wb_json_append_object(array), row->of, item, row->unit);
-        else if (row->type & TEXT)
-            wb_json_append_text(array, text_at(row, item, word));
+            put_all(wb_json_append_object(array), row->of, item, wb_keys_unit(row));
         else
-            wb_json_append_number(array, number_at(row, item, ""));
+            wb_json_append_number(array, number_at(item, wb_keys_unit(row)));
     }
 }
 
 static void put_number(struct wb_json *object, const struct wb_key *row, const char *at,
                        const char *unit)
 {
-    const double value = number_at(row, at, unit);
+    const char *const own = wb_keys_unit(row);
+    const double value = number_at(at, own[0] ? own : unit);
     if (isfinite(value) || (row->type & IF_KNOWN) != IF_KNOWN)
         wb_json_set_number(object, row->key, row->type & ROUNDED ? rounded(value) : value);
 }
@@ -159,12 +187,10 @@ static void put_row(struct wb_json *object, const struct wb_key *row, const char
     const char *const at = from + row->place.offset;
     if (row->settings)
         put_settings(object, row, at);
-    else if (!row->key)
-        put_all(object, row->of, at, unit);
     else if (row->type & LIST)
         put_list(wb_json_set_array(object, row->key), row, from);
     else if (row->of)
-        put_all(wb_json_set_object(object, row->key), row->of, at, row->unit);
+        put_all(wb_json_set_object(object, row->key), row->of, at, wb_keys_unit(row));
     else if (row->type & TEXT)
         put_text(object, row, at);
     else if (row->type & NUMBER)
@@ -181,8 +207,7 @@ static void walk_rows(struct walk *walk, const struct wb_keys *keys,
 {
     for (size_t i = 0; i < keys->n; i++) {
         const struct wb_key *const row = &keys->rows[i];
-        const bool has_place = row->place.form != WB_KEY_NOWHERE;
-        if (!row->key && row->of && !has_place) {
+        if (!row->key && row->of) {
             walk_rows(walk, row->of, visit);
         } else {
             walk->row++;

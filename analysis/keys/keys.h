@@ -1,16 +1,17 @@
 /* Keys: every key of the JSON and YAML files that the program writes, as rows of tables.
  *
- * A row has the key, its type, its unit and one sentence of meaning. Where the value is a member of
- * a struct, the row also has its place, and WB_PUT() writes it; the other values are set by
- * code. A table stands beside the code that writes its object. analysis/schema/ makes JSON Schemas
- * and the page docs/file-keys.md of the tables. Settings and quantities have tables of their own
- * (base/setting.h, quantity.h): a row includes them, so that nothing is stated twice.
+ * A row has the key, its type and one sentence of meaning; the unit stands at the end of the key
+ * (length_mm, flexural_rigidity_N_mm2). Where the value is a member of a struct, the row also has
+ * its place, and WB_PUT() writes it; the other values are set by code. A table stands beside the
+ * code that writes its object. analysis/schema/ makes JSON Schemas and the page docs/file-keys.md
+ * of the tables. Settings and quantities have tables of their own (base/setting.h, quantity.h): a
+ * row includes them, so that nothing is stated twice.
  *
  *     #define POINT(member) WB_AT(struct point, member)
  *     static const struct wb_key point_rows[] = {
- *         {"s_mm", POINT(s), "mm", "arc length of the place"},
- *         {"band", POINT(is_band), "", "the wire is bent too little there"},
- *         {"moment_N_mm", NUMBER | UNKNOWN, "N mm", "moment"},
+ *         {"s_mm", POINT(s), "arc length of the place"},
+ *         {"band", POINT(is_band), "the wire is bent too little there"},
+ *         {"moment_N_mm", NUMBER | UNKNOWN, "moment"},
  *     };
  *     static WB_KEYS(point, "point", "A point of the curve.");
  *
@@ -54,11 +55,11 @@ struct wb_key_place {
 struct wb_key {
     const char *key;           /* NULL: the keys of `of`, `settings` or `quantities` stand here */
     unsigned type;             /* bits of row.h */
-    const char *unit;          /* "mm"; "": none */
     const char *meaning;       /* without a full stop */
     const struct wb_keys *of;  /* of an object or of a list's objects */
     const char *choices;       /* the values of a text: "tip|follower"; NULL: any */
     struct wb_key_place place; /* of a text with choices: that of their index */
+    const char *unit;          /* "mm"; "": none; NULL: the unit at the end of the key */
     const struct wb_setting_table *settings;
     unsigned applies; /* which of the settings: bits as of wb_setting_applies(); 0: all */
     bool quantities;  /* the quantities of a calibration, as the file's format has them */
@@ -82,5 +83,8 @@ struct wb_keys {
     wb_keys_put(object, keys, #in, (const in *){from}) /* with a check of its type */
 void wb_keys_put(struct wb_json *object, const struct wb_keys *keys, const char *in,
                  const void *from);
+
+/* Unit of a row's value; "": none. */
+const char *wb_keys_unit(const struct wb_key *row);
 
 #endif

@@ -27,7 +27,7 @@ enum {
 
 /* The macros below give the type of a row and the place of its value, from the type of the member:
  *
- *     {"length_mm", WB_AT(struct rod, length) | UNKNOWN, "mm", "length"},
+ *     {"length_mm", WB_AT(struct rod, length) | UNKNOWN, "length"},
  */
 /* clang-format off */
 #define WB_KEY_FORM(value) _Generic(&(value), \

@@ -201,64 +201,62 @@ enum wb_status wb_bands_output_write(const struct wb_bands *bands, const char *f
 #define CASE(member) WB_AT(struct wb_bands_case, member)
 
 static const struct wb_key interval_rows[] = {
-    {"median", BAND_OF(median) | UNKNOWN, "", "median of the runs"},
-    {"low", BAND_OF(wide_low) | UNKNOWN, "",
-     "lower end of the band of 90 %, with the model's error"},
-    {"high", BAND_OF(wide_high) | UNKNOWN, "", "upper end of that band"},
-    {"runs_low", BAND_OF(low) | UNKNOWN, "", "5 % quantile of the runs alone"},
-    {"runs_high", BAND_OF(high) | UNKNOWN, "", "95 % quantile of the runs alone"},
+    {"median", BAND_OF(median) | UNKNOWN, "median of the runs"},
+    {"low", BAND_OF(wide_low) | UNKNOWN, "lower end of the band of 90 %, with the model's error"},
+    {"high", BAND_OF(wide_high) | UNKNOWN, "upper end of that band"},
+    {"runs_low", BAND_OF(low) | UNKNOWN, "5 % quantile of the runs alone"},
+    {"runs_high", BAND_OF(high) | UNKNOWN, "95 % quantile of the runs alone"},
 };
 static WB_KEYS(interval, "band", "A band of a predicted number, in the unit of its key.");
 
 static const struct wb_key group_rows[] = {
-    {"group", TEXT, "", "group of inputs"},
-    {"share", SHARE(share), "", "share of the ranks' variance that this group explains"},
-    {"share_low", SHARE(low), "", "lower end of its interval of 90 %"},
-    {"share_high", SHARE(high), "", "upper end of its interval of 90 %"},
+    {"group", TEXT, "group of inputs"},
+    {"share", SHARE(share), "share of the ranks' variance that this group explains"},
+    {"share_low", SHARE(low), "lower end of its interval of 90 %"},
+    {"share_high", SHARE(high), "upper end of its interval of 90 %"},
 };
 static WB_KEYS(group, "ranking_group", "The influence of a group of inputs.");
 
 static const struct wb_key ranking_rows[] = {
-    {"of", RANKING(of), "", "result that the ranking is of",
-     .choices = "force|deflection_springback"},
-    {"deflection_mm", RANKING(at) | UNKNOWN, "mm", "deflection at which the result is taken"},
-    {"R2", RANKING(ranking.r2) | UNKNOWN, "", "share of the variance that ranks explain"},
-    {"R2_low", RANKING(ranking.low) | UNKNOWN, "", "lower end of its interval"},
-    {"R2_high", RANKING(ranking.high) | UNKNOWN, "", "upper end of its interval"},
-    {"groups", OBJECT | LIST | OPTIONAL, "", "the groups of inputs; only from R2 = 0.9 on", &group},
+    {"of", RANKING(of), "result that the ranking is of", .choices = "force|deflection_springback"},
+    {"deflection_mm", RANKING(at) | UNKNOWN, "deflection at which the result is taken"},
+    {"R2", RANKING(ranking.r2) | UNKNOWN, "share of the variance that ranks explain"},
+    {"R2_low", RANKING(ranking.low) | UNKNOWN, "lower end of its interval"},
+    {"R2_high", RANKING(ranking.high) | UNKNOWN, "upper end of its interval"},
+    {"groups", OBJECT | LIST | OPTIONAL, "the groups of inputs; only from R2 = 0.9 on", &group},
 };
 static WB_KEYS(ranking, "ranking", "Which inputs the width of a band depends on.");
 
 static const struct wb_key of_case_rows[] = {
-    {"case", CASE(variant.name), "",
+    {"case", CASE(variant.name),
      "`file`, or the name of a scenario or of a combination of the sweep"},
-    {"wires", CASE(n_wires), "", "number of wires"},
-    {"packing", CASE(packing), "", "packing of the wires"},
-    {"tape_layers", CASE(layers), "", "layers of tape, with overlap; 0: no tape"},
-    {"tape_outline", TEXT, "", "how the tape lies round the wires", .choices = "none|circle|hull"},
-    {"runs_not_converged", CASE(n_lost), "", "runs that were not computed to the end"},
-    {"draws_limited", CASE(n_limited), "", "runs with a drawn law that had to be limited"},
-    {"deflection_mm", WB_AT(struct wb_bands_place, at) | OPTIONAL, "mm",
+    {"wires", CASE(n_wires), "number of wires"},
+    {"packing", CASE(packing), "packing of the wires"},
+    {"tape_layers", CASE(layers), "layers of tape, with overlap; 0: no tape"},
+    {"tape_outline", TEXT, "how the tape lies round the wires", .choices = "none|circle|hull"},
+    {"runs_not_converged", CASE(n_lost), "runs that were not computed to the end"},
+    {"draws_limited", CASE(n_limited), "runs with a drawn law that had to be limited"},
+    {"deflection_mm", WB_AT(struct wb_bands_place, at) | OPTIONAL,
      "largest deflection that the band covers"},
-    {"force_N", WB_AT(struct wb_bands_place, band) | OPTIONAL, "N", "force at that deflection",
+    {"force_N", WB_AT(struct wb_bands_place, band) | OPTIONAL, "force at that deflection",
      &interval},
-    {"deflection_springback", CASE(springback), "",
+    {"deflection_springback", CASE(springback),
      "springback of the deflection: 1 less the residual over the largest deflection", &interval},
-    {"residual_curvature_ratio", CASE(residual_curvature_ratio), "",
+    {"residual_curvature_ratio", CASE(residual_curvature_ratio),
      "largest curvature along the bundle at zero force over that at the largest deflection",
      &interval},
-    {"ranking", OBJECT | LIST, "", "which inputs the bands depend on", &ranking},
+    {"ranking", OBJECT | LIST, "which inputs the bands depend on", &ranking},
 };
 static WB_KEYS(of_case, "prediction_case", "A case that was predicted.");
 
 static const struct wb_key wb_bands_output_keys_rows[] = {
-    {"confidence", NUMBER, "", "probability of the bands"},
-    {"model_error", NUMBER, "", "standard deviation of the model's error, of the largest value"},
-    {"runs", WB_AT(struct wb_bands, runs), "", "runs of each case"},
-    {"seed", WB_AT(struct wb_bands, seed), "", "seed of the draws"},
-    {"stopped", WB_AT(struct wb_bands, stopped), "", "interrupted: the last case is missing"},
-    {"laws_of_wires", TEXT | LIST, "", "source of the law of each kind of wire"},
-    {"cases", OBJECT | LIST, "", "the cases", &of_case},
+    {"confidence", NUMBER, "probability of the bands"},
+    {"model_error", NUMBER, "standard deviation of the model's error, of the largest value"},
+    {"runs", WB_AT(struct wb_bands, runs), "runs of each case"},
+    {"seed", WB_AT(struct wb_bands, seed), "seed of the draws"},
+    {"stopped", WB_AT(struct wb_bands, stopped), "interrupted: the last case is missing"},
+    {"laws_of_wires", TEXT | LIST, "source of the law of each kind of wire"},
+    {"cases", OBJECT | LIST, "the cases", &of_case},
 };
 WB_KEYS(wb_bands_output_keys, "uncertainty", "Bands of a bundle's prediction.");
 

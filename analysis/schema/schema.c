@@ -138,8 +138,8 @@ static void add_row(const struct target *target, const struct wb_key *row)
     } else {
         set_value(target->definitions, schema, row);
     }
-    if (row->unit[0])
-        wb_json_set_text(schema, "unit", row->unit);
+    if (wb_keys_unit(row)[0])
+        wb_json_set_text(schema, "unit", wb_keys_unit(row));
     wb_json_set_text(schema, "description", row->meaning);
     if (!(row->type & OPTIONAL))
         wb_json_append_text(target->required, row->key);
@@ -207,17 +207,19 @@ static void add_estimate(const struct target *target, const struct wb_quantity *
 {
     const unsigned number = type & ESTIMATES ? NUMBER | UNKNOWN : NUMBER | OPTIONAL;
     const struct wb_key rows[] = {
-        {quantity->value_key, number, quantity->unit, "mean over the specimens"},
-        {"low", number, quantity->unit, "lower end of the 95 % confidence interval of the mean"},
-        {"high", number, quantity->unit, "upper end of that interval"},
-        {"candidates_low", number, quantity->unit,
+        {quantity->value_key, number, "mean over the specimens", .unit = quantity->unit},
+        {"low", number, "lower end of the 95 % confidence interval of the mean",
+         .unit = quantity->unit},
+        {"high", number, "upper end of that interval", .unit = quantity->unit},
+        {"candidates_low", number,
          "least value over the laws that the data do not exclude; of three-point bending over "
-         "friction and nose radius"},
-        {"candidates_high", number, quantity->unit, "largest value over the same"},
-        {"scatter", NUMBER | OPTIONAL, "", "standard deviation of the logarithm between specimens"},
+         "friction and nose radius",
+         .unit = quantity->unit},
+        {"candidates_high", number, "largest value over the same", .unit = quantity->unit},
+        {"scatter", NUMBER | OPTIONAL, "standard deviation of the logarithm between specimens"},
     };
     if (quantity->most > 0) {
-        const struct wb_key curvature = {"curvature_1_m", NUMBER, "1/m",
+        const struct wb_key curvature = {"curvature_1_m", NUMBER,
                                          "curvature at which the quantity is stated"};
         add_row(target, &curvature);
     }
@@ -242,7 +244,7 @@ static void add_quantity(const struct target *target, const struct wb_quantity *
         begin_list(&inner, schema);
     } else {
         const struct wb_key resolved = {
-            "resolved_from_1_m", type & ESTIMATES ? NUMBER | UNKNOWN : NUMBER, "1/m",
+            "resolved_from_1_m", type & ESTIMATES ? NUMBER | UNKNOWN : NUMBER,
             "smallest curvature that the data of all specimens resolve; below it the value follows "
             "from the law alone"};
         begin(&inner, schema);

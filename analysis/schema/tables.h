@@ -5,7 +5,7 @@
 #include "analysis/keys/common.h"
 #include "analysis/keys/row.h"
 
-/* Simulations (simulation_keys.c). */
+/* Simulations (schema_simulation.c). */
 extern const struct wb_keys wb_schema_simulation;
 
 /* Roots. */

@@ -11,59 +11,59 @@
 #define LOOPS WB_ARRAY(struct wb_validate_result, cycles.loops, cycles.n_loops)
 
 static const struct wb_key bound_rows[] = {
-    {"found", NUMBER | UNKNOWN, "", "value, in the unit of the key above"},
-    {"bound", NUMBER | UNKNOWN, "", "bound of the value; null: not known"},
-    {"exceeded", FLAG, "", "the value exceeds its bound"},
+    {"found", NUMBER | UNKNOWN, "value, in the unit of the key above"},
+    {"bound", NUMBER | UNKNOWN, "bound of the value; null: not known"},
+    {"exceeded", FLAG, "the value exceeds its bound"},
 };
 static WB_KEYS(bound, "bound", "A value of a validation and its bound.");
 
 static const struct wb_key bounds_rows[] = {
-    {"loading", OBJECT, "", "RMS error on loading over F_max", &bound},
-    {"unloading", OBJECT, "", "RMS error on unloading over F_max", &bound},
-    {"residual_deflection_mm", OBJECT, "mm", "error of the residual deflection", &bound},
-    {"shapes_mm", OBJECT, "mm", "RMS distance of the markers", &bound},
+    {"loading", OBJECT, "RMS error on loading over F_max", &bound},
+    {"unloading", OBJECT, "RMS error on unloading over F_max", &bound},
+    {"residual_deflection_mm", OBJECT, "error of the residual deflection", &bound},
+    {"shapes_mm", OBJECT, "RMS distance of the markers", &bound},
 };
 static WB_KEYS(bounds, "bounds", "Bounds of a validation.");
 
 static const struct wb_key unloading_rows[] = {
-    {"samples", RESULT(cycles.n_samples), "", "number of samples with unloading"},
-    {"rms", RESULT(cycles.rms) | UNKNOWN, "", "RMS error of the mean over F_max"},
-    {"max_error", RESULT(cycles.largest_error) | UNKNOWN, "",
-     "largest error of the mean over F_max"},
-    {"rms_of_samples", RESULT(cycles.sample_rms) | UNKNOWN, "",
+    {"samples", RESULT(cycles.n_samples), "number of samples with unloading"},
+    {"rms", RESULT(cycles.rms) | UNKNOWN, "RMS error of the mean over F_max"},
+    {"max_error", RESULT(cycles.largest_error) | UNKNOWN, "largest error of the mean over F_max"},
+    {"rms_of_samples", RESULT(cycles.sample_rms) | UNKNOWN,
      "RMS error of the single samples over F_max"},
-    {"rule_untested", RESULT(is_rule_untested), "",
+    {"rule_untested", RESULT(is_rule_untested),
      "the calibration had no unloading to test the hardening rule"},
 };
 static WB_KEYS(unloading, "unloading", "The prediction of the unloading.");
 
 static const struct wb_key residual_rows[] = {
-    {"measured", RESULT(cycles.residual_measured) | UNKNOWN, "mm", "measured residual deflection"},
-    {"predicted", RESULT(cycles.residual_computed) | UNKNOWN, "mm",
-     "predicted residual deflection"},
+    {"measured", RESULT(cycles.residual_measured) | UNKNOWN, "measured residual deflection",
+     .unit = "mm"},
+    {"predicted", RESULT(cycles.residual_computed) | UNKNOWN, "predicted residual deflection",
+     .unit = "mm"},
 };
 static WB_KEYS(residual, "residual_deflection",
                "Deflection where the force has returned to that at zero deflection.");
 
 static const struct wb_key loop_rows[] = {
-    {"cycle", LOOP(cycle), "", "cycle, from 1"},
-    {"samples", LOOP(n_samples), "", "number of samples"},
-    {"measured", LOOP(measured) | UNKNOWN, "mJ", "measured energy loss of the cycle"},
-    {"predicted", LOOP(computed) | UNKNOWN, "mJ", "predicted energy loss of the cycle"},
+    {"cycle", LOOP(cycle), "cycle, from 1"},
+    {"samples", LOOP(n_samples), "number of samples"},
+    {"measured", LOOP(measured) | UNKNOWN, "measured energy loss of the cycle", .unit = "mJ"},
+    {"predicted", LOOP(computed) | UNKNOWN, "predicted energy loss of the cycle", .unit = "mJ"},
 };
 static WB_KEYS(loop, "loop_energy", "The energy loss of a later cycle.");
 
 static const struct wb_key wb_validate_json_keys_rows[] = {
-    {"clamp_curvature_1_m", RESULT(cycles.clamp_curvature) | UNKNOWN | OPTIONAL, "1/m",
+    {"clamp_curvature_1_m", RESULT(cycles.clamp_curvature) | UNKNOWN | OPTIONAL,
      "computed curvature at the clamp"},
-    {"beyond_known_curvature", RESULT(is_beyond) | OPTIONAL, "",
+    {"beyond_known_curvature", RESULT(is_beyond) | OPTIONAL,
      "that curvature exceeds the one up to which the law was measured"},
-    {"bounds", OBJECT | OPTIONAL, "", "errors and their bounds", &bounds},
-    {"unloading", WB_HERE(struct wb_validate_result) | UNKNOWN | OPTIONAL, "",
+    {"bounds", OBJECT | OPTIONAL, "errors and their bounds", &bounds},
+    {"unloading", WB_HERE(struct wb_validate_result) | UNKNOWN | OPTIONAL,
      "prediction of the unloading; null: no unloading was measured", &unloading},
-    {"residual_deflection_mm", WB_HERE(struct wb_validate_result) | OPTIONAL, "mm",
-     "residual deflection", &residual},
-    {"loop_energy_mJ", LOOPS | OPTIONAL, "mJ", "energy loss of the later cycles", &loop},
+    {"residual_deflection_mm", WB_HERE(struct wb_validate_result) | OPTIONAL, "residual deflection",
+     &residual},
+    {"loop_energy_mJ", LOOPS | OPTIONAL, "energy loss of the later cycles", &loop},
 };
 WB_KEYS(wb_validate_json_keys, "validation_cycles", "");
 

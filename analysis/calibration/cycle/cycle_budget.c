@@ -357,29 +357,29 @@ double wb_cycle_budget_cell(const struct wb_budget *budget, enum wb_contribution
 #define BUDGET(member) WB_AT(struct wb_budget, member)
 
 static const struct wb_key contribution_rows[] = {
-    {"of", TEXT, "",
+    {"of", TEXT,
      "source of the uncertainty: `specimens`, `fits`, `law`, or what all specimens share"},
-    {"standard_uncertainty", NUMBER | UNKNOWN, "", "of the logarithm of the quantity"},
-    {"degrees_of_freedom", NUMBER | UNKNOWN, "", "degrees of freedom; null: infinite"},
-    {"sensitivity", NUMBER | UNKNOWN | OPTIONAL, "",
+    {"standard_uncertainty", NUMBER | UNKNOWN, "of the logarithm of the quantity"},
+    {"degrees_of_freedom", NUMBER | UNKNOWN, "degrees of freedom; null: infinite"},
+    {"sensitivity", NUMBER | UNKNOWN | OPTIONAL,
      "change of the logarithm by a relative change of what all specimens share"},
-    {"sensitivity_1_mm", NUMBER | UNKNOWN | OPTIONAL, "1/mm",
+    {"sensitivity_1_mm", NUMBER | UNKNOWN | OPTIONAL,
      "change of the logarithm by a change of the marker offset"},
 };
 static WB_KEYS(contribution, "contribution", "A contribution to the uncertainty of a quantity.");
 
 static const struct wb_key wb_cycle_budget_keys_rows[] = {
-    {"quantity", TEXT, "", "the quantity",
+    {"quantity", TEXT, "the quantity",
      .choices = "flexural_rigidity|residual_curvature_ratio|loop_energy|"
                 "deflection_springback|moment|secant_stiffness|"
                 "unloading_stiffness"},
-    {"curvature_1_m", NUMBER | UNKNOWN, "1/m", "curvature; null: the quantity has none"},
-    {"standard_uncertainty", BUDGET(combined) | UNKNOWN, "",
+    {"curvature_1_m", NUMBER | UNKNOWN, "curvature; null: the quantity has none"},
+    {"standard_uncertainty", BUDGET(combined) | UNKNOWN,
      "combined standard uncertainty of the logarithm of the quantity"},
-    {"degrees_of_freedom", BUDGET(effective_degrees) | UNKNOWN, "",
+    {"degrees_of_freedom", BUDGET(effective_degrees) | UNKNOWN,
      "effective degrees of freedom; null: infinite"},
-    {"coverage_factor", BUDGET(factor) | UNKNOWN, "", "coverage factor for 95 %"},
-    {"contributions", OBJECT | LIST, "", "contributions", &contribution},
+    {"coverage_factor", BUDGET(factor) | UNKNOWN, "coverage factor for 95 %"},
+    {"contributions", OBJECT | LIST, "contributions", &contribution},
 };
 WB_KEYS(wb_cycle_budget_keys, "budget", "The uncertainty budget of a quantity.");
 

@@ -624,13 +624,13 @@ enum wb_status wb_moment_curvature_compare(const struct wb_moment_cloud *const *
 #define POINT(member) WB_AT(struct wb_moment_point, member)
 
 static const struct wb_key wb_moment_curvature_keys_rows[] = {
-    {"curvature_1_m", POINT(curvature), "1/m", "curvature by the markers"},
-    {"curvature_deviation_1_m", POINT(deviation), "1/m", "standard uncertainty of the curvature"},
-    {"moment_N_mm", POINT(moment), "N mm", "moment by the strand's tension"},
-    {"branch", WB_CHOICE(struct wb_moment_point, is_unloading), "", "branch of the cycle",
+    {"curvature_1_m", POINT(curvature), "curvature by the markers"},
+    {"curvature_deviation_1_m", POINT(deviation), "standard uncertainty of the curvature"},
+    {"moment_N_mm", POINT(moment), "moment by the strand's tension"},
+    {"branch", WB_CHOICE(struct wb_moment_point, is_unloading), "branch of the cycle",
      .choices = "loading|unloading"},
-    {"s_mm", POINT(s), "mm", "arc length of the place"},
-    {"band", POINT(is_band), "", "the wire is bent too little there: the point shows scatter only"},
+    {"s_mm", POINT(s), "arc length of the place"},
+    {"band", POINT(is_band), "the wire is bent too little there: the point shows scatter only"},
 };
 WB_KEYS(wb_moment_curvature_keys, "moment_point", "A point of M over curvature, without a law.");
 

@@ -173,51 +173,48 @@ bool wb_recordings_cycle_is_refuted(const struct wb_recordings_cycle *cycle)
 #define VALLEY(member) WB_AT(struct wb_cycle_valley, member)
 
 static const struct wb_key cloud_rows[] = {
-    {"sample", INTEGER, "", "number of the piece"},
-    {"points", OBJECT | LIST, "", "points", &wb_moment_curvature_keys},
+    {"sample", INTEGER, "number of the piece"},
+    {"points", OBJECT | LIST, "points", &wb_moment_curvature_keys},
 };
 static WB_KEYS(cloud, "moment_points", "The points of a sample.");
 
 static const struct wb_key later_rows[] = {
-    {"sample", LATER(sample), "", "number of the piece"},
-    {"cycles", LATER(n_cycles), "", "number of cycles"},
-    {"rms_over_F_max", LATER(rms) | UNKNOWN, "", "RMS error of the later cycles over F_max"},
-    {"measured_energy_mJ", LATER(measured_energy) | UNKNOWN, "mJ",
+    {"sample", LATER(sample), "number of the piece"},
+    {"cycles", LATER(n_cycles), "number of cycles"},
+    {"rms_over_F_max", LATER(rms) | UNKNOWN, "RMS error of the later cycles over F_max"},
+    {"measured_energy_mJ", LATER(measured_energy) | UNKNOWN,
      "measured energy loss of the last cycle"},
-    {"computed_energy_mJ", LATER(computed_energy) | UNKNOWN, "mJ",
+    {"computed_energy_mJ", LATER(computed_energy) | UNKNOWN,
      "computed energy loss of the last cycle"},
 };
 static WB_KEYS(later, "later_cycles", "Later cycles, which the law was not fitted to.");
 
 static const struct wb_key remark_rows[] = {
-    {"severity", TEXT, "", "severity", .choices = "note|doubt"},
-    {"sample", NUMBER | UNKNOWN, "", "number of the piece; null: all"},
-    {"text", TEXT, "", "the remark"},
+    {"severity", TEXT, "severity", .choices = "note|doubt"},
+    {"sample", NUMBER | UNKNOWN, "number of the piece; null: all"},
+    {"text", TEXT, "the remark"},
 };
 static WB_KEYS(remark, "cycle_remark", "A remark on the calibration.");
 
 static const struct wb_key valley_rows[] = {
-    {"strength_coefficient_MPa", VALLEY(best.strength_coefficient) | UNKNOWN, "MPa",
-     "K of the best fit"},
-    {"hardening_exponent", VALLEY(best.hardening_exponent) | UNKNOWN, "", "n of the best fit"},
-    {"misfit", VALLEY(best_misfit) | UNKNOWN, "", "misfit of the best fit"},
-    {"limit", VALLEY(limit) | UNKNOWN, "",
-     "misfit up to which an F-test (95 %) sees no difference"},
-    {"strength_coefficient_low_MPa", VALLEY(strength_low) | UNKNOWN, "MPa",
-     "least K within that limit"},
-    {"strength_coefficient_high_MPa", VALLEY(strength_high) | UNKNOWN, "MPa",
+    {"strength_coefficient_MPa", VALLEY(best.strength_coefficient) | UNKNOWN, "K of the best fit"},
+    {"hardening_exponent", VALLEY(best.hardening_exponent) | UNKNOWN, "n of the best fit"},
+    {"misfit", VALLEY(best_misfit) | UNKNOWN, "misfit of the best fit"},
+    {"limit", VALLEY(limit) | UNKNOWN, "misfit up to which an F-test (95 %) sees no difference"},
+    {"strength_coefficient_low_MPa", VALLEY(strength_low) | UNKNOWN, "least K within that limit"},
+    {"strength_coefficient_high_MPa", VALLEY(strength_high) | UNKNOWN,
      "largest K within that limit"},
-    {"hardening_exponent_low", VALLEY(exponent_low) | UNKNOWN, "", "least n within that limit"},
-    {"hardening_exponent_high", VALLEY(exponent_high) | UNKNOWN, "", "largest n within that limit"},
+    {"hardening_exponent_low", VALLEY(exponent_low) | UNKNOWN, "least n within that limit"},
+    {"hardening_exponent_high", VALLEY(exponent_high) | UNKNOWN, "largest n within that limit"},
 };
 static WB_KEYS(valley, "ludwik_on_loading", "K and n of the first loading of the first sample.");
 
 static const struct wb_key wb_recordings_cycle_keys_rows[] = {
     {.of = &wb_cycle_json_keys},
-    {"moment_curvature_measured", OBJECT | LIST, "", "M over curvature without a law", &cloud},
-    {"later_cycles", OBJECT | OPTIONAL, "", "later cycles", &later},
-    {"remarks", OBJECT | LIST, "", "remarks on the calibration", &remark},
-    {"ludwik_on_loading_alone", OBJECT | OPTIONAL, "", "K and n of a first loading alone", &valley},
+    {"moment_curvature_measured", OBJECT | LIST, "M over curvature without a law", &cloud},
+    {"later_cycles", OBJECT | OPTIONAL, "later cycles", &later},
+    {"remarks", OBJECT | LIST, "remarks on the calibration", &remark},
+    {"ludwik_on_loading_alone", OBJECT | OPTIONAL, "K and n of a first loading alone", &valley},
 };
 WB_KEYS(wb_recordings_cycle_keys, "report_cycle_keys", "");
 

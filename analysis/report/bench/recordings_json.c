@@ -29,151 +29,146 @@ static const struct wb_key settings_rows[] = {
 static WB_KEYS(settings, "report_settings", "Settings of the calibration.");
 
 static const struct wb_key limits_rows[] = {
-    {"calibration_rms_max", NUMBER | OPTIONAL, "", "limit of the RMS of calibrations over F_max"},
-    {"validation_rms_max", NUMBER | OPTIONAL, "", "limit of the RMS of validations over F_max"},
+    {"calibration_rms_max", NUMBER | OPTIONAL, "limit of the RMS of calibrations over F_max"},
+    {"validation_rms_max", NUMBER | OPTIONAL, "limit of the RMS of validations over F_max"},
 };
 static WB_KEYS(limits, "report_limits", "Limits of the campaign.");
 
 static const struct wb_key recording_rows[] = {
-    {"name", WB_AT(struct wb_recordings_test, name), "", "name of the recording"},
-    {"wire", TEXT, "", "name of the product"},
-    {"purpose", TEXT, "", "use of the recording", .choices = "calibration|validation"},
-    {"used", TEST(usable), "", "the recording is used"},
-    {"seed", INTEGER | OPTIONAL, "", "seed of the virtual rig"},
-    {"sha256", TEXT | OPTIONAL, "", "SHA-256 of the uncompressed recording"},
-    {"excluded", OBJECT | OPTIONAL, "", "exclusion of the test", &wb_keys_excluded},
-    {"problem", TEXT | OPTIONAL, "", "why the recording is not used"},
-    {"sample", TEST(dataset.info.sample) | OPTIONAL, "", "number of the piece"},
-    {"length_mm", TEST(dataset.info.length) | OPTIONAL, "mm", "free length"},
-    {"virtual_rig", TEST(is_virtual) | OPTIONAL, "", "the data come from a virtual rig"},
-    {"start_utc", TEST(start_utc) | OPTIONAL, "", "start of the test"},
-    {"tool_revision", TEST(tool_revision) | OPTIONAL, "", "revision of the program that recorded"},
-    {"operator", TEST(operator_name) | OPTIONAL, "", "operator"},
-    {"bow_mm", NUMBER | OPTIONAL, "mm", "natural offset of the tip"},
-    {"corrections", OBJECT | LIST | OPTIONAL, "", "as in dataset.json", &wb_align_keys_correction},
-    {"checks", OBJECT | OPTIONAL, "", "as in dataset.json", &wb_align_keys_checks},
-    {"warnings", TEXT | LIST | OPTIONAL, "", "as in dataset.json"},
+    {"name", WB_AT(struct wb_recordings_test, name), "name of the recording"},
+    {"wire", TEXT, "name of the product"},
+    {"purpose", TEXT, "use of the recording", .choices = "calibration|validation"},
+    {"used", TEST(usable), "the recording is used"},
+    {"seed", INTEGER | OPTIONAL, "seed of the virtual rig"},
+    {"sha256", TEXT | OPTIONAL, "SHA-256 of the uncompressed recording"},
+    {"excluded", OBJECT | OPTIONAL, "exclusion of the test", &wb_keys_excluded},
+    {"problem", TEXT | OPTIONAL, "why the recording is not used"},
+    {"sample", TEST(dataset.info.sample) | OPTIONAL, "number of the piece"},
+    {"length_mm", TEST(dataset.info.length) | OPTIONAL, "free length"},
+    {"virtual_rig", TEST(is_virtual) | OPTIONAL, "the data come from a virtual rig"},
+    {"start_utc", TEST(start_utc) | OPTIONAL, "start of the test"},
+    {"tool_revision", TEST(tool_revision) | OPTIONAL, "revision of the program that recorded"},
+    {"operator", TEST(operator_name) | OPTIONAL, "operator"},
+    {"bow_mm", NUMBER | OPTIONAL, "natural offset of the tip"},
+    {"corrections", OBJECT | LIST | OPTIONAL, "as in dataset.json", &wb_align_keys_correction},
+    {"checks", OBJECT | OPTIONAL, "as in dataset.json", &wb_align_keys_checks},
+    {"warnings", TEXT | LIST | OPTIONAL, "as in dataset.json"},
 };
 static WB_KEYS(recording, "report_recording",
                "A recording; the keys from `sample` on are of a used one.");
 
 static const struct wb_key published_rows[] = {
     {.of = &wb_keys_ludwik},
-    {"source", WIRE(reference_source), "", "source of the values"},
+    {"source", WIRE(reference_source), "source of the values"},
 };
 static WB_KEYS(published, "published", "Published properties of a wire.");
 
 static const struct wb_key measured_rows[] = {
-    {"deflection_mm", NUMBER | LIST, "mm", "deflections of the curves"},
-    {"force_mN", CURVE_LIST(force) | UNKNOWN, "mN", "mean force of the samples"},
-    {"lowest_mN", CURVE_LIST(low) | UNKNOWN, "mN", "lowest force of the samples"},
-    {"highest_mN", CURVE_LIST(high) | UNKNOWN, "mN", "highest force of the samples"},
-    {"standard_deviation_mN", CURVE_LIST(deviation) | UNKNOWN, "mN",
+    {"deflection_mm", NUMBER | LIST, "deflections of the curves"},
+    {"force_mN", CURVE_LIST(force) | UNKNOWN, "mean force of the samples"},
+    {"lowest_mN", CURVE_LIST(low) | UNKNOWN, "lowest force of the samples"},
+    {"highest_mN", CURVE_LIST(high) | UNKNOWN, "highest force of the samples"},
+    {"standard_deviation_mN", CURVE_LIST(deviation) | UNKNOWN,
      "standard deviation of the force between samples"},
 };
 static WB_KEYS(measured, "measured_curve", "The mean curve of the samples.");
 
 static const struct wb_key computed_rows[] = {
-    {"rms_over_F_max", PREDICTION(rms) | UNKNOWN, "", "RMS error over F_max"},
-    {"rms_from_5mm_over_F_max", PREDICTION(rms_from_5mm) | UNKNOWN, "",
+    {"rms_over_F_max", PREDICTION(rms) | UNKNOWN, "RMS error over F_max"},
+    {"rms_from_5mm_over_F_max", PREDICTION(rms_from_5mm) | UNKNOWN,
      "the same of deflections from 5 mm on"},
-    {"largest_error_over_F_max", PREDICTION(max_error) | UNKNOWN, "", "largest error over F_max"},
-    {"points_reached", PREDICTION(n_reached), "", "deflections that the computation reached"},
-    {"force_mN", WB_POINTER(struct wb_prediction, force, n) | UNKNOWN, "mN", "computed force"},
-    {"error_over_F_max", WB_POINTER(struct wb_prediction, error, n) | UNKNOWN, "",
+    {"largest_error_over_F_max", PREDICTION(max_error) | UNKNOWN, "largest error over F_max"},
+    {"points_reached", PREDICTION(n_reached), "deflections that the computation reached"},
+    {"force_mN", WB_POINTER(struct wb_prediction, force, n) | UNKNOWN, "computed force"},
+    {"error_over_F_max", WB_POINTER(struct wb_prediction, error, n) | UNKNOWN,
      "error of the force over F_max"},
 };
 static WB_KEYS(computed, "computed_curve", "A computed curve.");
 
 static const struct wb_key comparison_rows[] = {
-    {"samples", RESULT(curve.n_samples) | OPTIONAL, "", "number of samples"},
-    {"length_mm", RESULT(info.length) | OPTIONAL, "mm", "free length"},
-    {"F_max_mN", RESULT(curve.max_force) | OPTIONAL, "mN",
-     "F_max, the largest force of the mean curve"},
-    {"max_deflection_mm", RESULT(curve.max_deflection) | OPTIONAL, "mm",
+    {"samples", RESULT(curve.n_samples) | OPTIONAL, "number of samples"},
+    {"length_mm", RESULT(info.length) | OPTIONAL, "free length"},
+    {"F_max_mN", RESULT(curve.max_force) | OPTIONAL, "F_max, the largest force of the mean curve"},
+    {"max_deflection_mm", RESULT(curve.max_deflection) | OPTIONAL,
      "largest deflection of the mean curve"},
-    {"scatter_rms_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
+    {"scatter_rms_over_F_max", NUMBER | UNKNOWN | OPTIONAL,
      "scatter between samples over F_max; null with one sample"},
-    {"residual_scatter_rms_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
+    {"residual_scatter_rms_over_F_max", NUMBER | UNKNOWN | OPTIONAL,
      "part of the scatter that remains with the natural shape of each sample"},
-    {"shape_rms_mm", RESULT(shape_rms) | UNKNOWN | OPTIONAL, "mm",
+    {"shape_rms_mm", RESULT(shape_rms) | UNKNOWN | OPTIONAL,
      "RMS distance of the markers from the computed wire"},
-    {"shape_largest_mm", RESULT(shape_max) | UNKNOWN | OPTIONAL, "mm", "largest such distance"},
-    {"shape_points", RESULT(n_shape_points) | OPTIONAL, "", "number of markers' places compared"},
-    {"mean_bow_mm", NUMBER | OPTIONAL, "mm", "mean natural offset of the tip"},
-    {"measured", OBJECT | OPTIONAL, "", "mean curve of the samples", &measured},
-    {"elastoplastic", RESULT(elastoplastic) | OPTIONAL, "", "curve of the elastoplastic wire",
+    {"shape_largest_mm", RESULT(shape_max) | UNKNOWN | OPTIONAL, "largest such distance"},
+    {"shape_points", RESULT(n_shape_points) | OPTIONAL, "number of markers' places compared"},
+    {"mean_bow_mm", NUMBER | OPTIONAL, "mean natural offset of the tip"},
+    {"measured", OBJECT | OPTIONAL, "mean curve of the samples", &measured},
+    {"elastoplastic", RESULT(elastoplastic) | OPTIONAL, "curve of the elastoplastic wire",
      &computed},
-    {"linear_elastic", RESULT(elastic) | OPTIONAL, "", "curve of the linear elastic wire",
-     &computed},
+    {"linear_elastic", RESULT(elastic) | OPTIONAL, "curve of the linear elastic wire", &computed},
 };
 static WB_KEYS(comparison, "comparison_keys", "");
 
 static const struct wb_key state_keys_rows[] = {
-    {"state", TEXT, "", "whether there is a result", .choices = "not wanted|missing|failed|done"},
-    {"problem", TEXT | OPTIONAL, "", "why it is missing or failed"},
+    {"state", TEXT, "whether there is a result", .choices = "not wanted|missing|failed|done"},
+    {"problem", TEXT | OPTIONAL, "why it is missing or failed"},
 };
 static WB_KEYS(state_keys, "state_keys", "");
 
 static const struct wb_key verdict_rows[] = {
-    {"rms_uncertainty_95_over_F_max", NUMBER | UNKNOWN | OPTIONAL, "",
+    {"rms_uncertainty_95_over_F_max", NUMBER | UNKNOWN | OPTIONAL,
      "in reports of a laboratory: expanded uncertainty (95 %) of the RMS"},
-    {"limit_kept", FLAG | OPTIONAL, "", "in reports of a laboratory: the limit is kept"},
+    {"limit_kept", FLAG | OPTIONAL, "in reports of a laboratory: the limit is kept"},
 };
 static WB_KEYS(verdict, "laboratory_verdict", "");
 
 static const struct wb_key uncertainties_rows[] = {
-    {"youngs_modulus_MPa", FITTED(deviation[0]) | UNKNOWN, "MPa", "of E"},
-    {"yield_stress_MPa", FITTED(deviation[1]) | UNKNOWN, "MPa", "of sigma_Y"},
-    {"strength_coefficient_factor", NUMBER | UNKNOWN, "",
+    {"youngs_modulus_MPa", FITTED(deviation[0]) | UNKNOWN, "of E"},
+    {"yield_stress_MPa", FITTED(deviation[1]) | UNKNOWN, "of sigma_Y"},
+    {"strength_coefficient_factor", NUMBER | UNKNOWN,
      "K lies between K divided by this factor and K times this factor"},
-    {"hardening_exponent", FITTED(deviation[3]) | UNKNOWN, "", "of n"},
+    {"hardening_exponent", FITTED(deviation[3]) | UNKNOWN, "of n"},
 };
 static WB_KEYS(uncertainties, "standard_uncertainties",
                "Standard uncertainties from the scatter between samples.");
 
 static const struct wb_key search_rows[] = {
-    {"first_strength_coefficient_MPa", FITTED(first_strength_coefficient), "MPa",
-     "initial guess of K"},
-    {"first_hardening_exponent", FITTED(first_hardening_exponent), "", "initial guess of n"},
-    {"stopped_because", TEXT, "", "why the search ended"},
-    {"restarted", FITTED(restarted), "", "the search was started again from the optimum"},
-    {"restart_moved", FITTED(restart_moved) | UNKNOWN, "",
+    {"first_strength_coefficient_MPa", FITTED(first_strength_coefficient), "initial guess of K"},
+    {"first_hardening_exponent", FITTED(first_hardening_exponent), "initial guess of n"},
+    {"stopped_because", TEXT, "why the search ended"},
+    {"restarted", FITTED(restarted), "the search was started again from the optimum"},
+    {"restart_moved", FITTED(restart_moved) | UNKNOWN,
      "largest relative change of K or n by the restart"},
-    {"beam_runs", FITTED(evaluations), "", "computations of the beam"},
-    {"beam_runs_not_converged", FITTED(failed_evaluations), "",
-     "computations that did not converge"},
-    {"strength_coefficient_MPa", NUMBER | LIST, "MPa", "K of each iteration"},
-    {"hardening_exponent", NUMBER | LIST, "", "n of each iteration"},
-    {"error_over_F_max", NUMBER | LIST | UNKNOWN, "", "error of each iteration"},
-    {"simplex_size", NUMBER | LIST | UNKNOWN, "", "size of the simplex in each iteration"},
+    {"beam_runs", FITTED(evaluations), "computations of the beam"},
+    {"beam_runs_not_converged", FITTED(failed_evaluations), "computations that did not converge"},
+    {"strength_coefficient_MPa", NUMBER | LIST, "K of each iteration"},
+    {"hardening_exponent", NUMBER | LIST, "n of each iteration"},
+    {"error_over_F_max", NUMBER | LIST | UNKNOWN, "error of each iteration"},
+    {"simplex_size", NUMBER | LIST | UNKNOWN, "size of the simplex in each iteration"},
 };
 static WB_KEYS(search, "search", "The search for K and n.");
 
 static const struct wb_key calibration_rows[] = {
     {.of = &state_keys},
-    {"properties", OBJECT | OPTIONAL, "", "E, sigma_Y, K and n", &wb_keys_ludwik},
-    {"standard_uncertainties", OBJECT | OPTIONAL, "", "their standard uncertainties",
-     &uncertainties},
-    {"bow_corrected", FITTED(bow_corrected) | OPTIONAL, "",
+    {"properties", OBJECT | OPTIONAL, "E, sigma_Y, K and n", &wb_keys_ludwik},
+    {"standard_uncertainties", OBJECT | OPTIONAL, "their standard uncertainties", &uncertainties},
+    {"bow_corrected", FITTED(bow_corrected) | OPTIONAL,
      "E and sigma_Y were corrected for the samples' bows"},
-    {"remarks", TEXT | LIST | OPTIONAL, "", "remarks on the properties"},
-    {"rms_over_F_max", FITTED(rms) | OPTIONAL, "", "RMS error of the fit over F_max"},
-    {"largest_error_over_F_max", FITTED(max_error) | OPTIONAL, "",
+    {"remarks", TEXT | LIST | OPTIONAL, "remarks on the properties"},
+    {"rms_over_F_max", FITTED(rms) | OPTIONAL, "RMS error of the fit over F_max"},
+    {"largest_error_over_F_max", FITTED(max_error) | OPTIONAL,
      "largest error of the fit over F_max"},
     {.of = &comparison},
-    {"search", OBJECT | OPTIONAL, "", "search for K and n", &search},
+    {"search", OBJECT | OPTIONAL, "search for K and n", &search},
     {.of = &verdict},
 };
 static WB_KEYS(calibration, "report_calibration",
                "The calibration of a wire; all keys are present where it is done.");
 
 static const struct wb_key expected_rows[] = {
-    {"rms_of_perfect_model_over_F_max", RESULT(expected_rms) | UNKNOWN | OPTIONAL, "",
+    {"rms_of_perfect_model_over_F_max", RESULT(expected_rms) | UNKNOWN | OPTIONAL,
      "RMS error expected from specimen scatter alone"},
-    {"rms_of_perfect_model_95_over_F_max", RESULT(expected_rms_95) | UNKNOWN | OPTIONAL, "",
+    {"rms_of_perfect_model_95_over_F_max", RESULT(expected_rms_95) | UNKNOWN | OPTIONAL,
      "RMS error that specimen scatter alone exceeds in one of twenty validations"},
-    {"share_explained_by_scatter", RESULT(scatter_share) | UNKNOWN | OPTIONAL, "",
+    {"share_explained_by_scatter", RESULT(scatter_share) | UNKNOWN | OPTIONAL,
      "square of the expected RMS over that of the RMS found, at most 1"},
 };
 static WB_KEYS(expected, "expected_keys", "");
@@ -186,11 +181,11 @@ static WB_KEYS(validation, "report_validation",
                "The validation of a wire; keys from `samples` on are present if done.");
 
 static const struct wb_key pooled_rows[] = {
-    {"low", NUMBER | UNKNOWN, "N mm2", "lower end of the 95 % confidence interval"},
-    {"high", NUMBER | UNKNOWN, "N mm2", "upper end of that interval"},
-    {"deviation_of_logarithm", WB_AT(struct wb_recordings_cycle_pool, deviation) | UNKNOWN, "",
+    {"low", NUMBER | UNKNOWN, "lower end of the 95 % confidence interval", .unit = "N mm2"},
+    {"high", NUMBER | UNKNOWN, "upper end of that interval", .unit = "N mm2"},
+    {"deviation_of_logarithm", WB_AT(struct wb_recordings_cycle_pool, deviation) | UNKNOWN,
      "pooled standard deviation of ln EI"},
-    {"degrees_of_freedom", WB_AT(struct wb_recordings_cycle_pool, degrees), "",
+    {"degrees_of_freedom", WB_AT(struct wb_recordings_cycle_pool, degrees),
      "its degrees of freedom"},
 };
 static WB_KEYS(pooled, "pooled_interval",
@@ -198,22 +193,22 @@ static WB_KEYS(pooled, "pooled_interval",
 
 /* Of a cycle that is done, or not. */
 static const struct wb_key prediction_rows[] = {
-    {"prediction", OBJECT | OPTIONAL, "", "validation of this law", &validation},
+    {"prediction", OBJECT | OPTIONAL, "validation of this law", &validation},
 };
 static WB_KEYS(prediction, "prediction_key", "");
 
 static const struct wb_key cycle_done_rows[] = {
-    {"state", TEXT, "", "the calibration is done", .choices = "done"},
+    {"state", TEXT, "the calibration is done", .choices = "done"},
     {.of = &wb_recordings_cycle_keys},
-    {"flexural_rigidity_N_mm2_pooled_over_wires", OBJECT | OPTIONAL, "N mm2",
-     "EI with the scatter of all wires' samples", &pooled},
+    {"flexural_rigidity_N_mm2_pooled_over_wires", OBJECT | OPTIONAL,
+     "EI with the scatter of all wires' samples", &pooled, .unit = "N mm2"},
     {.of = &prediction},
 };
 static WB_KEYS(cycle_done, "report_cycle", "The calibration on whole cycles.");
 
 static const struct wb_key cycle_failed_rows[] = {
-    {"state", TEXT, "", "why there is no calibration", .choices = "missing|failed"},
-    {"problem", TEXT, "", "why it is missing or failed"},
+    {"state", TEXT, "why there is no calibration", .choices = "missing|failed"},
+    {"problem", TEXT, "why it is missing or failed"},
     {.of = &prediction},
 };
 static WB_KEYS(cycle_failed, "report_cycle_missing",
@@ -224,27 +219,27 @@ static const struct wb_keys cycle = {"cycle", "The calibration on whole cycles, 
                                      .alternatives = cycles};
 
 static const struct wb_key wire_keys_rows[] = {
-    {"wire", WIRE(product.name), "", "name of the product"},
-    {"label", WIRE(label), "", "name in the report"},
-    {"conductor_diameter_mm", WIRE(product.conductor_diameter), "mm",
+    {"wire", WIRE(product.name), "name of the product"},
+    {"label", WIRE(label), "name in the report"},
+    {"conductor_diameter_mm", WIRE(product.conductor_diameter),
      "diameter of the conductor; 0: no single one"},
-    {"outer_diameter_mm", WIRE(product.outer_diameter), "mm", "outer diameter"},
-    {"density_g_cm3", WIRE(product.density), "g/cm3", "mean density over the outer diameter"},
-    {"published", OBJECT | OPTIONAL, "", "published properties", &published},
-    {"calibration", OBJECT, "", "calibration by the paper's route", &calibration},
-    {"validation", OBJECT, "", "validation of that calibration", &validation},
-    {"cycle", OBJECT | OPTIONAL, "", "calibration on whole cycles", &cycle},
+    {"outer_diameter_mm", WIRE(product.outer_diameter), "outer diameter"},
+    {"density_g_cm3", WIRE(product.density), "mean density over the outer diameter"},
+    {"published", OBJECT | OPTIONAL, "published properties", &published},
+    {"calibration", OBJECT, "calibration by the paper's route", &calibration},
+    {"validation", OBJECT, "validation of that calibration", &validation},
+    {"cycle", OBJECT | OPTIONAL, "calibration on whole cycles", &cycle},
 };
 static WB_KEYS(wire_keys, "report_wire", "A wire of a campaign of recordings.");
 
 static const struct wb_key wb_recordings_json_keys_rows[] = {
     {.of = &wb_numbers_head_keys},
-    {"virtual_rig", WB_AT(struct wb_recordings_results, any_virtual), "",
+    {"virtual_rig", WB_AT(struct wb_recordings_results, any_virtual),
      "a recording that is used comes from a virtual rig"},
-    {"settings", OBJECT, "", "settings of the calibration", &settings},
-    {"limits", OBJECT, "", "limits of the campaign", &limits},
-    {"recordings", OBJECT | LIST, "", "recordings of the campaign", &recording},
-    {"wires", OBJECT | LIST, "", "wires of the campaign", &wire_keys},
+    {"settings", OBJECT, "settings of the calibration", &settings},
+    {"limits", OBJECT, "limits of the campaign", &limits},
+    {"recordings", OBJECT | LIST, "recordings of the campaign", &recording},
+    {"wires", OBJECT | LIST, "wires of the campaign", &wire_keys},
 };
 WB_KEYS(wb_recordings_json_keys, "report_of_recordings", "The report of a campaign of recordings.");
 

@@ -237,40 +237,40 @@ void wb_machines_cable_put(struct wb_document *document, const struct wb_machine
 #define RING(member) WB_AT(struct wb_cable_ring, member)
 
 static const struct wb_key interval_rows[] = {
-    {"value", INTERVAL(value) | UNKNOWN, "", "value"},
-    {"low_95", INTERVAL(low) | UNKNOWN, "", "lower end of its 95 % confidence interval"},
-    {"high_95", INTERVAL(high) | UNKNOWN, "", "upper end of that interval"},
+    {"value", INTERVAL(value) | UNKNOWN, "value"},
+    {"low_95", INTERVAL(low) | UNKNOWN, "lower end of its 95 % confidence interval"},
+    {"high_95", INTERVAL(high) | UNKNOWN, "upper end of that interval"},
 };
 static WB_KEYS(interval, "interval", "A value and its interval.");
 
 static const struct wb_key layer_place_rows[] = {
-    {"curvature_1_m", NUMBER | UNKNOWN, "1/m", "curvature"},
-    {"seating", FLAG, "", "the deflection is so small that the seating of the wire decides"},
-    {"measured_Nmm", PLACE(measured) | UNKNOWN, "N mm", "measured moment"},
-    {"free_Nmm", PLACE(free) | UNKNOWN, "N mm", "moment of wires that slide freely"},
-    {"bonded_Nmm", PLACE(bonded) | UNKNOWN, "N mm", "moment of bonded wires"},
-    {"over_first_layer", NUMBER | UNKNOWN, "", "measured moment over that of the first layer"},
-    {"measured_over_free", PLACE(ratio), "", "measured moment over that of free wires", &interval},
-    {"chi", PLACE(chi), "", "place between free (0) and bonded (1) wires", &interval},
-    {"chi_of_each_series", NUMBER | LIST | UNKNOWN, "", "chi with the wires of each series alone"},
-    {"chi_of_half_and_twice_the_zero", NUMBER | LIST | UNKNOWN, "",
+    {"curvature_1_m", NUMBER | UNKNOWN, "curvature"},
+    {"seating", FLAG, "the deflection is so small that the seating of the wire decides"},
+    {"measured_Nmm", PLACE(measured) | UNKNOWN, "measured moment"},
+    {"free_Nmm", PLACE(free) | UNKNOWN, "moment of wires that slide freely"},
+    {"bonded_Nmm", PLACE(bonded) | UNKNOWN, "moment of bonded wires"},
+    {"over_first_layer", NUMBER | UNKNOWN, "measured moment over that of the first layer"},
+    {"measured_over_free", PLACE(ratio), "measured moment over that of free wires", &interval},
+    {"chi", PLACE(chi), "place between free (0) and bonded (1) wires", &interval},
+    {"chi_of_each_series", NUMBER | LIST | UNKNOWN, "chi with the wires of each series alone"},
+    {"chi_of_half_and_twice_the_zero", NUMBER | LIST | UNKNOWN,
      "chi with half and twice the force that marks the first contact"},
 };
 static WB_KEYS(layer_place, "layer_place", "A layer at one curvature.");
 
 static const struct wb_key layer_keys_rows[] = {
-    {"group", TEXT, "", "group of the layer"},
-    {"tests", WB_AT(struct wb_machines_layer, n), "", "number of tests"},
-    {"places", OBJECT | LIST, "", "curvatures", &layer_place},
+    {"group", TEXT, "group of the layer"},
+    {"tests", WB_AT(struct wb_machines_layer, n), "number of tests"},
+    {"places", OBJECT | LIST, "curvatures", &layer_place},
 };
 static WB_KEYS(layer_keys, "cable_layer", "A layer of the cable.");
 
 static const struct wb_key wb_machines_cable_keys_rows[] = {
-    {"wire_count", RING(n_wires), "", "wires round the core"},
-    {"wire_circle_radius_mm", RING(radius), "mm", "radius of the circle of their centres"},
-    {"conductor_area_mm2", RING(area), "mm2", "area of the metal in one wire"},
-    {"conductor", OBJECT, "", "law of the conductor", &wb_keys_ludwik},
-    {"layers", OBJECT | LIST, "", "layers", &layer_keys},
+    {"wire_count", RING(n_wires), "wires round the core"},
+    {"wire_circle_radius_mm", RING(radius), "radius of the circle of their centres"},
+    {"conductor_area_mm2", RING(area), "area of the metal in one wire"},
+    {"conductor", OBJECT, "law of the conductor", &wb_keys_ludwik},
+    {"layers", OBJECT | LIST, "layers", &layer_keys},
 };
 WB_KEYS(wb_machines_cable_keys, "cable", "A layered cable.");
 

@@ -237,72 +237,69 @@ void wb_machines_fits_put(struct wb_document *document, const struct wb_machines
 #define CALIBRATION(member) WB_AT(struct wb_three_point_calibration, member)
 
 static const struct wb_key estimate_rows[] = {
-    {"value", ESTIMATE(value) | UNKNOWN, "", "value, in the unit of the key above"},
-    {"low_95", ESTIMATE(low) | UNKNOWN, "", "lower end of its 95 % confidence interval"},
-    {"high_95", ESTIMATE(high) | UNKNOWN, "", "upper end of that interval"},
-    {"low_of_bench", ESTIMATE(candidates_low) | UNKNOWN, "",
+    {"value", ESTIMATE(value) | UNKNOWN, "value, in the unit of the key above"},
+    {"low_95", ESTIMATE(low) | UNKNOWN, "lower end of its 95 % confidence interval"},
+    {"high_95", ESTIMATE(high) | UNKNOWN, "upper end of that interval"},
+    {"low_of_bench", ESTIMATE(candidates_low) | UNKNOWN,
      "least value over friction and nose radius"},
-    {"high_of_bench", ESTIMATE(candidates_high) | UNKNOWN, "",
+    {"high_of_bench", ESTIMATE(candidates_high) | UNKNOWN,
      "largest value over friction and nose radius"},
 };
 static WB_KEYS(estimate, "bench_estimate", "A value and its intervals.");
 
 static const struct wb_key moment_keys_rows[] = {
-    {"curvature_1_m", NUMBER | UNKNOWN, "1/m", "curvature"},
-    {"moment_Nmm", WB_HERE(struct wb_estimate), "N mm", "moment of a first loading", &estimate},
+    {"curvature_1_m", NUMBER | UNKNOWN, "curvature"},
+    {"moment_Nmm", WB_HERE(struct wb_estimate), "moment of a first loading", &estimate},
 };
 static WB_KEYS(moment_keys, "fit_moment", "The moment at one curvature.");
 
 static const struct wb_key fit_test_rows[] = {
-    {"series", MEMBER(data.info.piece.series), "", "series that the test belongs to"},
-    {"sample", MEMBER(data.info.sample), "", "number of the piece"},
-    {"problem", TEXT | OPTIONAL, "", "why no law was fitted"},
-    {"EI_Nmm2", MEMBER(rigidity) | UNKNOWN | OPTIONAL, "N mm2", "EI at zero curvature"},
-    {"largest_moment_Nmm", MEMBER(moment[WB_THREE_POINT_MOMENTS - 1]) | UNKNOWN | OPTIONAL, "N mm",
+    {"series", MEMBER(data.info.piece.series), "series that the test belongs to"},
+    {"sample", MEMBER(data.info.sample), "number of the piece"},
+    {"problem", TEXT | OPTIONAL, "why no law was fitted"},
+    {"EI_Nmm2", MEMBER(rigidity) | UNKNOWN | OPTIONAL, "EI at zero curvature"},
+    {"largest_moment_Nmm", MEMBER(moment[WB_THREE_POINT_MOMENTS - 1]) | UNKNOWN | OPTIONAL,
      "moment at the last curvature"},
-    {"misfit", MEMBER(fit.misfit) | UNKNOWN | OPTIONAL, "",
-     "RMS of the force residuals over F_max"},
-    {"converged", MEMBER(fit.is_converged) | OPTIONAL, "", "the fit converged"},
-    {"first_contact_mm", MEMBER(fit.first_contact) | UNKNOWN | OPTIONAL, "mm",
+    {"misfit", MEMBER(fit.misfit) | UNKNOWN | OPTIONAL, "RMS of the force residuals over F_max"},
+    {"converged", MEMBER(fit.is_converged) | OPTIONAL, "the fit converged"},
+    {"first_contact_mm", MEMBER(fit.first_contact) | UNKNOWN | OPTIONAL,
      "travel at the first contact"},
-    {"usable_mm", MEMBER(data.usable) | UNKNOWN | OPTIONAL, "mm",
-     "travel up to which the test is used"},
-    {"limit", WB_CHOICE(struct wb_three_point_member, data.limit) | OPTIONAL, "",
+    {"usable_mm", MEMBER(data.usable) | UNKNOWN | OPTIONAL, "travel up to which the test is used"},
+    {"limit", WB_CHOICE(struct wb_three_point_member, data.limit) | OPTIONAL,
      "reason of that limit", .choices = "end of the loading|given|kink|third of the span"},
 };
 static WB_KEYS(fit_test, "fit_test", "The fit of a test.");
 
 static const struct wb_key left_out_keys_rows[] = {
-    {"scatter_N", LEFT_OUT(scatter) | UNKNOWN, "N",
+    {"scatter_N", LEFT_OUT(scatter) | UNKNOWN,
      "standard deviation of the tests, RMS over deflections"},
-    {"scatter_alone_N", LEFT_OUT(expected) | UNKNOWN, "N",
+    {"scatter_alone_N", LEFT_OUT(expected) | UNKNOWN,
      "RMS error expected from specimen scatter alone: sqrt(n / (n - 1)) times that"},
-    {"model_N", LEFT_OUT(rms) | UNKNOWN, "N", "RMS of the model less the test that was left out"},
-    {"bias_N", LEFT_OUT(bias) | UNKNOWN, "N", "RMS over deflections of `bias_at_N`"},
-    {"bias_over_scatter", NUMBER | UNKNOWN, "", "`bias_N` over `scatter_N`"},
-    {"deflection_mm", WB_FULL(struct wb_left_out, deflection) | UNKNOWN, "mm",
+    {"model_N", LEFT_OUT(rms) | UNKNOWN, "RMS of the model less the test that was left out"},
+    {"bias_N", LEFT_OUT(bias) | UNKNOWN, "RMS over deflections of `bias_at_N`"},
+    {"bias_over_scatter", NUMBER | UNKNOWN, "`bias_N` over `scatter_N`"},
+    {"deflection_mm", WB_FULL(struct wb_left_out, deflection) | UNKNOWN,
      "deflections that all tests reach"},
-    {"bias_at_N", WB_FULL(struct wb_left_out, offset) | UNKNOWN, "N",
+    {"bias_at_N", WB_FULL(struct wb_left_out, offset) | UNKNOWN,
      "model less the mean of the other tests"},
 };
 static WB_KEYS(left_out_keys, "left_out", "A validation by leaving each test out.");
 
 static const struct wb_key wb_machines_fits_keys_rows[] = {
-    {"wire", TEXT, "", "name of the wire"},
-    {"test_count", WB_AT(struct wb_machines_fit, n), "", "number of tests"},
-    {"tests_fitted", CALIBRATION(n_fitted) | OPTIONAL, "", "tests that a law was fitted to"},
-    {"series", CALIBRATION(n_series) | OPTIONAL, "", "number of series"},
-    {"misfit", CALIBRATION(misfit) | UNKNOWN | OPTIONAL, "",
-     "RMS of the force residuals over F_max"},
-    {"s_of_ln_EI_between_series", CALIBRATION(series_deviation) | UNKNOWN | OPTIONAL, "",
+    {"wire", TEXT, "name of the wire"},
+    {"test_count", WB_AT(struct wb_machines_fit, n), "number of tests"},
+    {"tests_fitted", CALIBRATION(n_fitted) | OPTIONAL, "tests that a law was fitted to"},
+    {"series", CALIBRATION(n_series) | OPTIONAL, "number of series"},
+    {"misfit", CALIBRATION(misfit) | UNKNOWN | OPTIONAL, "RMS of the force residuals over F_max"},
+    {"s_of_ln_EI_between_series", CALIBRATION(series_deviation) | UNKNOWN | OPTIONAL,
      "standard deviation of ln EI between series"},
-    {"EI_identifiable", CALIBRATION(is_rigidity_identifiable) | OPTIONAL, "",
+    {"EI_identifiable", CALIBRATION(is_rigidity_identifiable) | OPTIONAL,
      "the data determine EI at zero curvature"},
-    {"EI_Nmm2", CALIBRATION(rigidity) | OPTIONAL, "N mm2", "EI at zero curvature", &estimate},
-    {"moments", OBJECT | LIST | OPTIONAL, "", "moments of a first loading", &moment_keys},
-    {"tests", OBJECT | LIST | OPTIONAL, "", "fits of the tests", &fit_test},
-    {"problem", TEXT | OPTIONAL, "", "why there is no fit or no validation"},
-    {"left_out", OBJECT | OPTIONAL, "", "validation by leaving each test out", &left_out_keys},
+    {"EI_Nmm2", CALIBRATION(rigidity) | OPTIONAL, "EI at zero curvature", &estimate},
+    {"moments", OBJECT | LIST | OPTIONAL, "moments of a first loading", &moment_keys},
+    {"tests", OBJECT | LIST | OPTIONAL, "fits of the tests", &fit_test},
+    {"problem", TEXT | OPTIONAL, "why there is no fit or no validation"},
+    {"left_out", OBJECT | OPTIONAL, "validation by leaving each test out", &left_out_keys},
 };
 WB_KEYS(wb_machines_fits_keys, "fitted_wire",
         "The calibration of a wire on three-point bending tests.");

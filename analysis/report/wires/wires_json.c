@@ -18,107 +18,105 @@
 #define ROD(member) WB_AT(struct wb_wires_rod, member)
 
 static const struct wb_key peak_rows[] = {
-    {"von_mises_MPa", PEAK(stress), "MPa", "largest von Mises stress"},
-    {"at_mm", WB_FULL(struct wb_wires_peak, reference), "mm",
-     "its place in the straight wire: x, y, z"},
+    {"von_mises_MPa", PEAK(stress), "largest von Mises stress"},
+    {"at_mm", WB_FULL(struct wb_wires_peak, reference), "its place in the straight wire: x, y, z"},
 };
 static WB_KEYS(peak, "stress_peak", "The largest stress of a part.");
 
 static const struct wb_key section_keys_rows[] = {
-    {"state", WB_AT(struct wb_field, state), "", "name of the model's step"},
-    {"section", TEXT, "", "kind of section", .choices = "longitudinal|cross"},
-    {"from_clamp_mm", WB_AT(struct wb_field, x) | UNKNOWN, "mm",
+    {"state", WB_AT(struct wb_field, state), "name of the model's step"},
+    {"section", TEXT, "kind of section", .choices = "longitudinal|cross"},
+    {"from_clamp_mm", WB_AT(struct wb_field, x) | UNKNOWN,
      "place of a cross section; null: longitudinal"},
-    {"core", OBJECT | OPTIONAL, "", "largest stress of the core", &peak},
-    {"jacket", OBJECT | OPTIONAL, "", "largest stress of the jacket", &peak},
+    {"core", OBJECT | OPTIONAL, "largest stress of the core", &peak},
+    {"jacket", OBJECT | OPTIONAL, "largest stress of the jacket", &peak},
 };
 static WB_KEYS(section_keys, "section", "A section with stress fields.");
 
 static const struct wb_key run_keys_rows[] = {
     {.of = &wb_simulation_state_keys},
-    {"elements", RUN(elements) | UNKNOWN, "", "number of elements"},
-    {"degrees_of_freedom", RUN(unknowns) | UNKNOWN, "", "number of unknowns"},
-    {"iterations", RUN(iterations) | UNKNOWN, "", "iterations of the equilibrium"},
-    {"cpu_s", RUN(simulation.cpu_s) | UNKNOWN, "s", "CPU time"},
-    {"peak_memory_MB", NUMBER | UNKNOWN, "MB", "largest memory of the process"},
-    {"slip_mm", NUMBER | OPTIONAL, "mm", "with friction: largest slip"},
-    {"slip_limit_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+    {"elements", RUN(elements) | UNKNOWN, "number of elements"},
+    {"degrees_of_freedom", RUN(unknowns) | UNKNOWN, "number of unknowns"},
+    {"iterations", RUN(iterations) | UNKNOWN, "iterations of the equilibrium"},
+    {"cpu_s", RUN(simulation.cpu_s) | UNKNOWN, "CPU time"},
+    {"peak_memory_MB", NUMBER | UNKNOWN, "largest memory of the process"},
+    {"slip_mm", NUMBER | OPTIONAL, "with friction: largest slip"},
+    {"slip_limit_mm", NUMBER | UNKNOWN | OPTIONAL,
      "with friction: limit of the assumption of small sliding"},
-    {"opening_mm", NUMBER | UNKNOWN | OPTIONAL, "mm", "with friction: largest opening"},
-    {"sha256", RUN(simulation.sha256) | OPTIONAL, "", "SHA-256 of force_deflection.csv"},
-    {"follower_force_N", RUN(force) | UNKNOWN | OPTIONAL, "N", "follower force"},
-    {"tip_mm", WB_FULL(struct wb_wires_run, tip) | UNKNOWN | OPTIONAL, "mm",
-     "place of the tip: x, y, z"},
-    {"tip_angle_degrees", RUN(tip_angle) | UNKNOWN | OPTIONAL, "degree", "slope angle at the tip"},
-    {"largest_distance_from_solid_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+    {"opening_mm", NUMBER | UNKNOWN | OPTIONAL, "with friction: largest opening"},
+    {"sha256", RUN(simulation.sha256) | OPTIONAL, "SHA-256 of force_deflection.csv"},
+    {"follower_force_N", RUN(force) | UNKNOWN | OPTIONAL, "follower force"},
+    {"tip_mm", WB_FULL(struct wb_wires_run, tip) | UNKNOWN | OPTIONAL, "place of the tip: x, y, z"},
+    {"tip_angle_degrees", RUN(tip_angle) | UNKNOWN | OPTIONAL, "slope angle at the tip"},
+    {"largest_distance_from_solid_mm", NUMBER | UNKNOWN | OPTIONAL,
      "largest distance of the axes of rod and solid"},
-    {"sections", OBJECT | LIST | OPTIONAL, "", "sections with stress fields", &section_keys},
-    {"tip_moved_at_most_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+    {"sections", OBJECT | LIST | OPTIONAL, "sections with stress fields", &section_keys},
+    {"tip_moved_at_most_mm", NUMBER | UNKNOWN | OPTIONAL,
      "with residual stress: largest distance of the tip from that of the model without"},
 };
 static WB_KEYS(run_keys, "comparison_run",
                "A dataset of a case; the keys from `sha256` on are of a used one.");
 
 static const struct wb_key case_keys_rows[] = {
-    {"label", CASE(label), "", "name of the case in the report"},
-    {"model", CASE(model_name), "", "name of the model"},
-    {"inputs_sha256", CASE(datasets[WB_WIRES_SOLID].inputs_sha256), "",
+    {"label", CASE(label), "name of the case in the report"},
+    {"model", CASE(model_name), "name of the model"},
+    {"inputs_sha256", CASE(datasets[WB_WIRES_SOLID].inputs_sha256),
      "SHA-256 of the solid's inputs"},
-    {"wire3d", OBJECT | OPTIONAL, "", "dataset of the solid", &run_keys},
-    {"wire1d", OBJECT | OPTIONAL, "", "dataset of the rod", &run_keys},
-    {"cpu_of_rod_over_solid", NUMBER | UNKNOWN | OPTIONAL, "",
+    {"wire3d", OBJECT | OPTIONAL, "dataset of the solid", &run_keys},
+    {"wire1d", OBJECT | OPTIONAL, "dataset of the rod", &run_keys},
+    {"cpu_of_rod_over_solid", NUMBER | UNKNOWN | OPTIONAL,
      "CPU time of the rod over that of the solid"},
 };
 static WB_KEYS(case_keys, "comparison_case", "A case of the comparison.");
 
 static const struct wb_key stress_keys_rows[] = {
-    {"from_clamp_mm", STRESS(x), "mm", "place of the cross section"},
-    {"core", OBJECT | OPTIONAL, "", "largest stress of the core", &peak},
-    {"jacket", OBJECT | OPTIONAL, "", "largest stress of the jacket", &peak},
-    {"curvature_per_mm", NUMBER | UNKNOWN, "1/mm", "curvature of the exact rod there"},
-    {"E_kappa_r_MPa", STRESS(beam) | UNKNOWN, "MPa", "stress E kappa r of beam theory"},
+    {"from_clamp_mm", STRESS(x), "place of the cross section"},
+    {"core", OBJECT | OPTIONAL, "largest stress of the core", &peak},
+    {"jacket", OBJECT | OPTIONAL, "largest stress of the jacket", &peak},
+    {"curvature_per_mm", NUMBER | UNKNOWN, "curvature of the exact rod there"},
+    {"E_kappa_r_MPa", STRESS(beam) | UNKNOWN, "stress E kappa r of beam theory"},
 };
 static WB_KEYS(stress_keys, "elastic_stress", "Stresses of a cross section of the elastic solid.");
 
 static const struct wb_key rod_keys_rows[] = {
-    {"reached", ROD(reached), "", "the rod reached the force"},
-    {"tip_x_mm", ROD(x[WB_WIRES_POINTS - 1]) | UNKNOWN, "mm", "x of the tip"},
-    {"tip_y_mm", ROD(y[WB_WIRES_POINTS - 1]) | UNKNOWN, "mm", "y of the tip"},
-    {"tip_angle_degrees", ROD(tip_angle) | UNKNOWN, "degree", "slope angle at the tip"},
-    {"largest_distance_from_solid_mm", NUMBER | UNKNOWN | OPTIONAL, "mm",
+    {"reached", ROD(reached), "the rod reached the force"},
+    {"tip_x_mm", ROD(x[WB_WIRES_POINTS - 1]) | UNKNOWN, "x of the tip"},
+    {"tip_y_mm", ROD(y[WB_WIRES_POINTS - 1]) | UNKNOWN, "y of the tip"},
+    {"tip_angle_degrees", ROD(tip_angle) | UNKNOWN, "slope angle at the tip"},
+    {"largest_distance_from_solid_mm", NUMBER | UNKNOWN | OPTIONAL,
      "largest distance of the axes of rod and solid"},
-    {"x_mm", WB_FULL(struct wb_wires_rod, x) | UNKNOWN, "mm", "x of the axis"},
-    {"y_mm", WB_FULL(struct wb_wires_rod, y) | UNKNOWN, "mm", "y of the axis"},
-    {"force_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "N", "forces of the curve"},
-    {"deflection_mm", NUMBER | LIST | UNKNOWN | OPTIONAL, "mm", "deflections of the curve"},
-    {"angle_degrees", NUMBER | LIST | UNKNOWN | OPTIONAL, "degree", "slope angles of the curve"},
+    {"x_mm", WB_FULL(struct wb_wires_rod, x) | UNKNOWN, "x of the axis"},
+    {"y_mm", WB_FULL(struct wb_wires_rod, y) | UNKNOWN, "y of the axis"},
+    {"force_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "forces of the curve"},
+    {"deflection_mm", NUMBER | LIST | UNKNOWN | OPTIONAL, "deflections of the curve"},
+    {"angle_degrees", NUMBER | LIST | UNKNOWN | OPTIONAL, "slope angles of the curve"},
 };
 static WB_KEYS(rod_keys, "rod", "A rod under the same force.");
 
 static const struct wb_key fit_keys_rows[] = {
-    {"printed", OBJECT | OPTIONAL, "", "published properties", &wb_keys_ludwik},
-    {"problem", TEXT | OPTIONAL, "", "why there is no fit"},
-    {"properties", OBJECT | OPTIONAL, "", "fitted properties", &wb_keys_ludwik},
-    {"rms_over_largest_deflection", NUMBER | UNKNOWN | OPTIONAL, "",
+    {"printed", OBJECT | OPTIONAL, "published properties", &wb_keys_ludwik},
+    {"problem", TEXT | OPTIONAL, "why there is no fit"},
+    {"properties", OBJECT | OPTIONAL, "fitted properties", &wb_keys_ludwik},
+    {"rms_over_largest_deflection", NUMBER | UNKNOWN | OPTIONAL,
      "RMS error over the largest deflection"},
-    {"F_max_N", NUMBER | OPTIONAL, "N", "largest force"},
-    {"max_deflection_mm", NUMBER | OPTIONAL, "mm", "largest deflection"},
-    {"stopped_because", TEXT | OPTIONAL, "", "why the search ended"},
-    {"beam_runs", INTEGER | OPTIONAL, "", "computations of the beam"},
-    {"rod", OBJECT | OPTIONAL, "", "rod with the fitted properties", &rod_keys},
+    {"F_max_N", NUMBER | OPTIONAL, "largest force"},
+    {"max_deflection_mm", NUMBER | OPTIONAL, "largest deflection"},
+    {"stopped_because", TEXT | OPTIONAL, "why the search ended"},
+    {"beam_runs", INTEGER | OPTIONAL, "computations of the beam"},
+    {"rod", OBJECT | OPTIONAL, "rod with the fitted properties", &rod_keys},
 };
 static WB_KEYS(fit_keys, "comparison_fit", "The homogenised law fitted to the solid.");
 
 static const struct wb_key wb_wires_json_keys_rows[] = {
     {.of = &wb_numbers_head_keys},
-    {"jacket_modulus_per_percent_of_core_MPa", NUMBER, "MPa",
+    {"jacket_modulus_per_percent_of_core_MPa", NUMBER,
      "change of the jacket's E by eq. 8 when the core's E changes by 1 %"},
-    {"cases", OBJECT | LIST, "", "cases", &case_keys},
-    {"elastic_stresses", OBJECT | LIST, "", "stresses of the elastic solid", &stress_keys},
-    {"exact_elastic_rod", OBJECT | OPTIONAL, "", "elastica", &rod_keys},
-    {"fit", OBJECT, "", "homogenised law fitted to the solid", &fit_keys},
-    {"printed_rod", OBJECT | OPTIONAL, "", "rod with the published properties", &rod_keys},
-    {"printed_collapse_force_N", NUMBER | UNKNOWN | OPTIONAL, "N",
+    {"cases", OBJECT | LIST, "cases", &case_keys},
+    {"elastic_stresses", OBJECT | LIST, "stresses of the elastic solid", &stress_keys},
+    {"exact_elastic_rod", OBJECT | OPTIONAL, "elastica", &rod_keys},
+    {"fit", OBJECT, "homogenised law fitted to the solid", &fit_keys},
+    {"printed_rod", OBJECT | OPTIONAL, "rod with the published properties", &rod_keys},
+    {"printed_collapse_force_N", NUMBER | UNKNOWN | OPTIONAL,
      "force at which that rod would collapse without hardening"},
 };
 WB_KEYS(wb_wires_json_keys, "report_of_comparison", "The report of a comparison campaign.");

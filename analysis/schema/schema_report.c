@@ -16,38 +16,38 @@ const struct wb_keys wb_schema_report = {
 /* --- manifest.json --- */
 
 static const struct wb_key manifest_input_rows[] = {
-    {"what", TEXT, "", "kind of input", .choices = "recording|file"},
-    {"name", TEXT, "",
+    {"what", TEXT, "kind of input", .choices = "recording|file"},
+    {"name", TEXT,
      "name: of a recording; of a file relative to the campaign's folder or to the shipped data, "
      "or its folder and name"},
-    {"sha256", TEXT, "", "SHA-256; of a recording of the uncompressed one"},
+    {"sha256", TEXT, "SHA-256; of a recording of the uncompressed one"},
 };
 static WB_KEYS(manifest_input, "manifest_input", "A recording or a file that was read.");
 
 static const struct wb_key manifest_file_rows[] = {
-    {"name", TEXT, "", "name, relative to the report's folder"},
-    {"sha256", TEXT, "", "SHA-256"},
+    {"name", TEXT, "name, relative to the report's folder"},
+    {"sha256", TEXT, "SHA-256"},
 };
 static WB_KEYS(manifest_file, "manifest_file", "A file of the report.");
 
 static const struct wb_key build_rows[] = {
-    {"version", TEXT, "", "version of the program"},
-    {"revision", TEXT, "", "revision of the sources"},
-    {"compiler", TEXT, "", "compiler"},
-    {"options", TEXT, "", "options of the compiler that choose machine code"},
-    {"processor", TEXT, "", "vector instructions, and the processor that OpenBLAS assumes"},
-    {"libraries", OBJECT | LIST, "", "libraries of the process", &wb_keys_sum},
-    {"fonts", OBJECT | LIST, "", "fonts of the report", &wb_keys_sum},
+    {"version", TEXT, "version of the program"},
+    {"revision", TEXT, "revision of the sources"},
+    {"compiler", TEXT, "compiler"},
+    {"options", TEXT, "options of the compiler that choose machine code"},
+    {"processor", TEXT, "vector instructions, and the processor that OpenBLAS assumes"},
+    {"libraries", OBJECT | LIST, "libraries of the process", &wb_keys_sum},
+    {"fonts", OBJECT | LIST, "fonts of the report", &wb_keys_sum},
 };
 static WB_KEYS(build, "build", "The program that made the report.");
 
 static const struct wb_key wb_schema_manifest_rows[] = {
-    {"report", TEXT, "", "number of the report; empty without a laboratory"},
-    {"title", TEXT, "", "title of the report"},
-    {"amends", TEXT | OPTIONAL, "", "number of the report that this one replaces"},
-    {"campaign", OBJECT, "", "campaign file", &wb_numbers_campaign_keys},
-    {"inputs", OBJECT | LIST, "", "inputs of the report, sorted", &manifest_input},
-    {"files", OBJECT | LIST, "", "files of the report", &manifest_file},
-    {"build", OBJECT, "", "program that made the report", &build},
+    {"report", TEXT, "number of the report; empty without a laboratory"},
+    {"title", TEXT, "title of the report"},
+    {"amends", TEXT | OPTIONAL, "number of the report that this one replaces"},
+    {"campaign", OBJECT, "campaign file", &wb_numbers_campaign_keys},
+    {"inputs", OBJECT | LIST, "inputs of the report, sorted", &manifest_input},
+    {"files", OBJECT | LIST, "files of the report", &manifest_file},
+    {"build", OBJECT, "program that made the report", &build},
 };
 WB_KEYS(wb_schema_manifest, "manifest", "The inputs and files of a signed report.");
