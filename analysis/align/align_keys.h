@@ -4,9 +4,9 @@
 
 #include "analysis/keys/keys.h"
 
-extern const struct wb_keys wb_align_keys; /* of its root */
+extern const struct wb_keys wb_align_document_keys; /* of its root */
 
 /* Parts that reports copy. */
-extern const struct wb_keys wb_align_keys_correction, wb_align_keys_checks;
+extern const struct wb_keys wb_align_correction_keys, wb_align_checks_keys;
 
 #endif

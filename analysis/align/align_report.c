@@ -83,7 +83,7 @@ static const struct wb_key load_stream_rows[] = {
 };
 static WB_KEYS(load_stream, "load_cell_stream", "The stream of the load cell.");
 
-static const struct wb_key markers_keys_rows[] = {
+static const struct wb_key markers_rows[] = {
     {"frames", INTEGER, "number of frames"},
     {"seen_percent", NUMBER, "share of the markers' places that were seen"},
     {"stray_points", INTEGER, "points that belong to no marker"},
@@ -92,7 +92,7 @@ static const struct wb_key markers_keys_rows[] = {
      "points left out because the server computed them from a model"},
     {"chain_searches", INTEGER, "searches for the chain of markers from scratch"},
 };
-static WB_KEYS(markers_keys, "markers", "The identification of the markers.");
+static WB_KEYS(markers, "markers", "The identification of the markers.");
 
 static const struct wb_key loss_rows[] = {
     {"received", INTEGER, "number received"},
@@ -105,8 +105,8 @@ static const struct wb_key loss_rows[] = {
 static WB_KEYS(loss, "loss", "Samples of one stream that were lost.");
 
 static const struct wb_key losses_rows[] = {
-    {"frames", OBJECT, "frames of the cameras", &loss},
-    {"readings", OBJECT, "readings of the load cell", &loss},
+    {"frames", OBJECT, "frames of the cameras", &loss_keys},
+    {"readings", OBJECT, "readings of the load cell", &loss_keys},
 };
 static WB_KEYS(losses, "losses", "Samples that were lost.");
 
@@ -200,27 +200,29 @@ static const struct wb_key import_rows[] = {
 };
 static WB_KEYS(import, "mocap_import", "The import of files of cameras and load cell.");
 
-static const struct wb_key wb_align_keys_checks_rows[] = {
-    {"import", OBJECT | OPTIONAL, "of an imported recording: what the import found", &import},
-    {"losses", OBJECT | OPTIONAL, "frames and readings that were lost", &losses},
-    {"camera_clock", OBJECT | LIST | OPTIONAL, "segments of the cameras' clock", &camera_clock},
+static const struct wb_key wb_align_checks_rows[] = {
+    {"import", OBJECT | OPTIONAL, "of an imported recording: what the import found", &import_keys},
+    {"losses", OBJECT | OPTIONAL, "frames and readings that were lost", &losses_keys},
+    {"camera_clock", OBJECT | LIST | OPTIONAL, "segments of the cameras' clock",
+     &camera_clock_keys},
     {"disordered_frames", INTEGER | OPTIONAL,
      "frames left out: without a stamp, repeated or out of order"},
-    {"load_cell_stream", OBJECT | OPTIONAL, "the stream of the load cell", &load_stream},
+    {"load_cell_stream", OBJECT | OPTIONAL, "the stream of the load cell", &load_stream_keys},
     {"markers", OBJECT | OPTIONAL, "identification of the markers", &markers_keys},
-    {"bending_plane", OBJECT | OPTIONAL, "plane in which the wire bends", &wb_align_rows_plane},
-    {"stage", OBJECT | OPTIONAL, "measured over commanded travel", &wb_align_rows_stage},
-    {"zero_load", OBJECT | LIST | OPTIONAL, "stretches without load", &zero},
-    {"timing", OBJECT | OPTIONAL, "effect of a lag between force and deflection", &timing},
-    {"natural_shape", OBJECT | OPTIONAL, "natural shape from force and markers", &natural},
-    {"rows", OBJECT | OPTIONAL, "rows of the tables", &check_rows},
-    {"holds", OBJECT | LIST | OPTIONAL, "holds of the test by the operator", &hold},
+    {"bending_plane", OBJECT | OPTIONAL, "plane in which the wire bends",
+     &wb_align_rows_plane_keys},
+    {"stage", OBJECT | OPTIONAL, "measured over commanded travel", &wb_align_rows_stage_keys},
+    {"zero_load", OBJECT | LIST | OPTIONAL, "stretches without load", &zero_keys},
+    {"timing", OBJECT | OPTIONAL, "effect of a lag between force and deflection", &timing_keys},
+    {"natural_shape", OBJECT | OPTIONAL, "natural shape from force and markers", &natural_keys},
+    {"rows", OBJECT | OPTIONAL, "rows of the tables", &check_rows_keys},
+    {"holds", OBJECT | LIST | OPTIONAL, "holds of the test by the operator", &hold_keys},
 };
-WB_KEYS(wb_align_keys_checks, "checks", "Findings of the alignment.");
+WB_KEYS(wb_align_checks, "checks", "Findings of the alignment.");
 
 /* --- corrections --- */
 
-static const struct wb_key wb_align_keys_correction_rows[] = {
+static const struct wb_key wb_align_correction_rows[] = {
     {"name", TEXT, "the correction",
      .choices = "filter delay|marker offset|tare|zero drift|strand lean|force at zero "
                 "deflection|natural shape"},
@@ -232,7 +234,7 @@ static const struct wb_key wb_align_keys_correction_rows[] = {
     {"uncertainty_ms", NUMBER | UNKNOWN | OPTIONAL, "its standard uncertainty"},
     {"note", TEXT, "what was done, and how the size was found"},
 };
-WB_KEYS(wb_align_keys_correction, "correction",
+WB_KEYS(wb_align_correction, "correction",
         "A correction of the data; its size stands in the key of its unit.");
 
 /* --- where the data come from --- */
@@ -247,14 +249,16 @@ static WB_KEYS(difference, "difference", "A key in which two files differ.");
 static const struct wb_key correction_file_rows[] = {
     {"file", TEXT, "name of the file"},
     {"sha256", TEXT, "SHA-256 of the file"},
-    {"differences", OBJECT | LIST, "keys in which it differs from the recorded file", &difference},
+    {"differences", OBJECT | LIST, "keys in which it differs from the recorded file",
+     &difference_keys},
 };
 static WB_KEYS(correction_file, "corrected_file",
                "A file that holds in place of the recorded one.");
 
 static const struct wb_key corrected_rows[] = {
-    {"rig", OBJECT | OPTIONAL, "rig file in place of the recorded one", &correction_file},
-    {"specimen", OBJECT | OPTIONAL, "specimen file in place of the recorded one", &correction_file},
+    {"rig", OBJECT | OPTIONAL, "rig file in place of the recorded one", &correction_file_keys},
+    {"specimen", OBJECT | OPTIONAL, "specimen file in place of the recorded one",
+     &correction_file_keys},
 };
 static WB_KEYS(corrected, "corrected", "Files that hold in place of recorded ones.");
 
@@ -266,8 +270,8 @@ static const struct wb_key recording_rows[] = {
     {"notes", TEXT | OPTIONAL, "notes of the operator"},
     {"recorded_with_version", TEXT | OPTIONAL, "version of the program that recorded"},
     {"recorded_with_revision", TEXT | OPTIONAL, "revision of the program that recorded"},
-    {"excluded", OBJECT | OPTIONAL, "exclusion of the test", &wb_keys_excluded},
-    {"corrected", OBJECT | OPTIONAL, "files that hold in place of recorded ones", &corrected},
+    {"excluded", OBJECT | OPTIONAL, "exclusion of the test", &wb_common_excluded_keys},
+    {"corrected", OBJECT | OPTIONAL, "files that hold in place of recorded ones", &corrected_keys},
 };
 static WB_KEYS(recording, "recording", "The recording of a dataset.");
 
@@ -281,7 +285,7 @@ static const struct wb_key settings_rows[] = {
 };
 static WB_KEYS(settings, "align_settings", "Settings of the alignment.");
 
-static const struct wb_key specimen_keys_rows[] = {
+static const struct wb_key specimen_rows[] = {
     {"wire", ALIGN(wire.name), "name of the product"},
     {"sample", ALIGN(specimen.sample), "number of the piece"},
     {"length_mm", ALIGN(specimen.length) | ROUNDED, "free length"},
@@ -293,7 +297,7 @@ static const struct wb_key specimen_keys_rows[] = {
     {"outer_diameter_mm", ALIGN(wire.outer_diameter) | ROUNDED, "outer diameter"},
     {"density_g_cm3", ALIGN(wire.density) | ROUNDED, "mean density over the outer diameter"},
 };
-static WB_KEYS(specimen_keys, "specimen", "The specimen, as its files say.");
+static WB_KEYS(specimen, "specimen", "The specimen, as its files say.");
 
 static const struct wb_key cell_rows[] = {
     {"protocol", ALIGN(rig.load_cell.protocol), "protocol of the load cell"},
@@ -331,29 +335,29 @@ static const struct wb_key rig_rows[] = {
     {"time_scale", ALIGN(rig.time_scale) | ROUNDED,
      "factor by which the clocks of a virtual rig run faster"},
     {"gravity_m_s2", ALIGN(gravity) | ROUNDED, "local gravity"},
-    {"load_cell", OBJECT, "load cell", &cell},
-    {"mocap", WB_HERE(struct wb_align), "cameras", &mocap},
-    {"stage", WB_HERE(struct wb_align), "stage", &rig_stage},
-    {"strand", WB_HERE(struct wb_align), "strand", &strand},
+    {"load_cell", OBJECT, "load cell", &cell_keys},
+    {"mocap", WB_HERE(struct wb_align), "cameras", &mocap_keys},
+    {"stage", WB_HERE(struct wb_align), "stage", &rig_stage_keys},
+    {"strand", WB_HERE(struct wb_align), "strand", &strand_keys},
 };
 static WB_KEYS(rig, "rig", "The rig, as its file says.");
 
-static const struct wb_key wb_align_keys_rows[] = {
+static const struct wb_key wb_align_document_rows[] = {
     {"source", TEXT, "test on the bench, or on a virtual rig"},
-    {"tool", OBJECT, "program that aligned the recording", &wb_keys_tool},
-    {"settings", WB_HERE(struct wb_align), "settings of the alignment", &settings},
+    {"tool", OBJECT, "program that aligned the recording", &wb_common_tool_keys},
+    {"settings", WB_HERE(struct wb_align), "settings of the alignment", &settings_keys},
     {"specimen", OBJECT, "the specimen", &specimen_keys},
-    {"rig", OBJECT, "the rig", &rig},
+    {"rig", OBJECT, "the rig", &rig_keys},
     {"corrections", OBJECT | LIST, "corrections in the order in which they were made",
-     &wb_align_keys_correction},
-    {"checks", OBJECT, "findings of the alignment", &wb_align_keys_checks},
+     &wb_align_correction_keys},
+    {"checks", OBJECT, "findings of the alignment", &wb_align_checks_keys},
     {"warnings", TEXT | LIST, "warnings"},
-    {"recordings", OBJECT | LIST, "the recording", &recording},
+    {"recordings", OBJECT | LIST, "the recording", &recording_keys},
     {"cycles", INTEGER, "number of cycles"},
     {"largest_deflection_mm", NUMBER, "largest deflection"},
     {"complete", FLAG, "false: there are gaps, or the test was cut short"},
 };
-WB_KEYS(wb_align_keys, "aligned_keys", "Keys of the dataset of a recording.");
+WB_KEYS(wb_align_document, "aligned_keys", "Keys of the dataset of a recording.");
 
 static void describe_specimen(const struct wb_align *align, struct wb_json *document)
 {
@@ -368,12 +372,12 @@ static void describe_specimen(const struct wb_align *align, struct wb_json *docu
 static void describe_rig(const struct wb_align *align, struct wb_json *document)
 {
     struct wb_json *const object = wb_json_set_object(document, "rig");
-    WB_PUT(object, &rig, struct wb_align, align);
+    WB_PUT(object, &rig_keys, struct wb_align, align);
     struct wb_json *const of = wb_json_set_object(object, "load_cell");
-    WB_PUT(of, &cell, struct wb_align, align);
+    WB_PUT(of, &cell_keys, struct wb_align, align);
     wb_align_set(of, "capacity_g", align->rig.load_cell.capacity / WB_STANDARD_GRAVITY / WB_G);
-    WB_PUT(of, &cell, struct wb_align, align);
-    WB_PUT(object, &rig, struct wb_align, align);
+    WB_PUT(of, &cell_keys, struct wb_align, align);
+    WB_PUT(object, &rig_keys, struct wb_align, align);
 }
 
 void wb_align_describe(struct wb_align *align)
@@ -383,7 +387,7 @@ void wb_align_describe(struct wb_align *align)
     wb_json_set_text(document, "source",
                      align->is_virtual ? "test on a virtual rig" : "test on the bench");
     wb_keys_put_tool(document, "wirebench align");
-    WB_PUT(document, &wb_align_keys, struct wb_align, align);
+    WB_PUT(document, &wb_align_document_keys, struct wb_align, align);
     describe_specimen(align, document);
     describe_rig(align, document);
     align->corrections = wb_json_set_array(document, "corrections");

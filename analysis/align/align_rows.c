@@ -77,7 +77,7 @@ static void describe_markers(struct wb_align *align)
     wb_json_set_integer(object, "model_filled_left_out", (int64_t)align->cloud.n_filled);
     wb_json_set_integer(object, "chain_searches", (int64_t)tracks->n_searches);
     struct wb_json *const plane = wb_json_set_object(align->checks, "bending_plane");
-    WB_PUT(plane, &wb_align_rows_plane, struct wb_bench_frame, frame);
+    WB_PUT(plane, &wb_align_rows_plane_keys, struct wb_bench_frame, frame);
     wb_align_set(plane, "vertical_uncertainty_mrad", frame->up_uncertainty * 1e3);
     wb_json_set_text(plane, "vertical",
                      frame->up_from_motion ? "direction of the clamp's motion"
@@ -600,7 +600,7 @@ static void describe_stage(struct wb_align *align, const struct stage_fit *fit, 
     struct wb_json *const object = wb_json_set_object(align->checks, "stage");
     const bool lost = lost_steps(align, fit);
     wb_json_set_integer(object, "reports", (int64_t)n);
-    WB_PUT(object, &wb_align_rows_stage, struct stage_fit, fit);
+    WB_PUT(object, &wb_align_rows_stage_keys, struct stage_fit, fit);
     wb_json_set_boolean(object, "lost_steps", lost);
     if (lost)
         wb_align_warn(

@@ -221,12 +221,12 @@ static void count_gaps(struct import *import)
 
 #define IMPORT(member) WB_AT(struct import, member)
 
-static const struct wb_key column_keys_rows[] = {
+static const struct wb_key column_rows[] = {
     {"column", INTEGER, "number of the column, from 1"},
     {"header", TEXT, "name of the column in the file"},
     {"unit", TEXT, "unit of the column"},
 };
-static WB_KEYS(column_keys, "import_column", "A column of the imported file.");
+static WB_KEYS(column, "import_column", "A column of the imported file.");
 
 static const struct wb_key columns_rows[] = {
     {"time", OBJECT | OPTIONAL, "column of time", &column_keys},
@@ -236,7 +236,7 @@ static const struct wb_key columns_rows[] = {
 };
 static WB_KEYS(columns, "import_columns", "The columns of the imported file that are used.");
 
-static const struct wb_key wb_machine_import_keys_rows[] = {
+static const struct wb_key wb_machine_import_rows[] = {
     {"file", TEXT, "name of the original file"},
     {"bytes", IMPORT(bytes), "size of the original file"},
     {"sha256", IMPORT(hash), "SHA-256 of the original file"},
@@ -245,7 +245,7 @@ static const struct wb_key wb_machine_import_keys_rows[] = {
     {"delimiter", TEXT, "character between fields, `tab` or `blanks`"},
     {"decimal_sign", TEXT, "decimal sign"},
     {"header_line", IMPORT(table.header_line), "line with the names of the columns; 0: none"},
-    {"columns", OBJECT, "columns that are used", &columns},
+    {"columns", OBJECT, "columns that are used", &columns_keys},
     {"lines", IMPORT(report.lines), "lines of the file"},
     {"rows", IMPORT(report.rows), "rows of the dataset"},
     {"empty_rows", IMPORT(report.empty), "lines without force and travel"},
@@ -265,7 +265,7 @@ static const struct wb_key wb_machine_import_keys_rows[] = {
     {"force_turned", FLAG, "the machine counts force downwards; the sign was changed"},
     {"travel_turned", FLAG, "the machine counts travel downwards; the sign was changed"},
 };
-WB_KEYS(wb_machine_import_keys, "force_import", "The file of a testing machine.");
+WB_KEYS(wb_machine_import, "force_import", "The file of a testing machine.");
 
 static void set_column(struct wb_json *object, const struct import *import, enum wb_measured m)
 {

@@ -81,7 +81,7 @@ void wb_simulated_wire_inputs(struct wb_json *object, const struct wb_wire_model
                               bool is_solid);
 
 /* Keys of `simulation` of a wire, and of the mesh of its solid. */
-extern const struct wb_keys wb_simulated_wire_keys, wb_simulated_wire_mesh;
+extern const struct wb_keys wb_simulated_wire_keys, wb_simulated_wire_mesh_keys;
 
 /* How a wire model was computed. */
 struct wb_simulated_wire {

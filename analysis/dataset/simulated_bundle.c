@@ -85,7 +85,7 @@ static const struct wb_key override_rows[] = {
 static WB_KEYS(override, "overridden",
                "The settings of the bundle's file that options of the command replaced.");
 
-static const struct wb_key wb_simulated_bundle_head_keys_rows[] = {
+static const struct wb_key wb_simulated_bundle_head_rows[] = {
     {"name", MODEL(name), "name of the model"},
     {"title", MODEL(title), "title of the model"},
     {"notes", MODEL(notes) | IF_KNOWN, "notes of the model"},
@@ -94,10 +94,10 @@ static const struct wb_key wb_simulated_bundle_head_keys_rows[] = {
     {"wires", MODEL(packing.n), "number of wires"},
     {"tape", MODEL(has_tape), "there is a tape"},
     {.settings = &friction_setting, MODEL(interface)},
-    {"cohesion", OBJECT | OPTIONAL, "bond between tape and wires", &cohesion},
-    {"overridden", OBJECT | OPTIONAL, "settings that options replaced", &override},
+    {"cohesion", OBJECT | OPTIONAL, "bond between tape and wires", &cohesion_keys},
+    {"overridden", OBJECT | OPTIONAL, "settings that options replaced", &override_keys},
 };
-WB_KEYS(wb_simulated_bundle_head_keys, "bundle_keys", "");
+WB_KEYS(wb_simulated_bundle_head, "bundle_keys", "");
 
 static const struct wb_key bundle_mesh_rows[] = {
     {"name", MESH(name), "name of the mesh"},
@@ -139,8 +139,8 @@ static const struct wb_key bundle_largest_rows[] = {
 };
 static WB_KEYS(bundle_largest, "largest_of_bundle", "Largest values of the run.");
 
-static const struct wb_key wb_simulated_bundle_keys_rows[] = {
-    {"mesh", OBJECT, "mesh", &bundle_mesh},
+static const struct wb_key wb_simulated_bundle_rows[] = {
+    {"mesh", OBJECT, "mesh", &bundle_mesh_keys},
     {"elements", RESULT(hexahedra), "number of hexahedra"},
     {"shells", RESULT(shells), "number of shells"},
     {"time_step_s", RESULT(time_step) | UNKNOWN, "time step"},
@@ -157,8 +157,8 @@ static const struct wb_key wb_simulated_bundle_keys_rows[] = {
     {"precision", TEXT | OPTIONAL,
      "precision of forces and of stored states of the material; absent: single",
      .choices = "single|double"},
-    {"energy", OBJECT | OPTIONAL, "energies at the last row", &bundle_energy},
-    {"largest", RESULT(largest), "largest values of the run", &bundle_largest},
+    {"energy", OBJECT | OPTIONAL, "energies at the last row", &bundle_energy_keys},
+    {"largest", RESULT(largest), "largest values of the run", &bundle_largest_keys},
     {"converged", RESULT(converged), "the whole loading was computed"},
     {"stopped", RESULT(stopped), "stopped by Ctrl-C"},
     {"problem", TEXT | OPTIONAL, "where and why the computation failed"},
@@ -169,15 +169,15 @@ static const struct wb_key wb_simulated_bundle_keys_rows[] = {
     {"cpu_s", WB_AT(struct wb_simulated_bundle, cpu), "CPU time of the computation"},
     {"ns_per_element_step", NUMBER | OPTIONAL, "CPU time over hexahedra and steps", .unit = "ns"},
 };
-WB_KEYS(wb_simulated_bundle_keys, "explicit_keys", "");
+WB_KEYS(wb_simulated_bundle, "explicit_keys", "");
 
 static void describe_cohesion(struct wb_json *simulation,
                               const struct wb_bundle_interface *interface)
 {
     struct wb_json *const object = wb_json_set_object(simulation, "cohesion");
-    WB_PUT(object, &cohesion, struct wb_bundle_interface, interface);
+    WB_PUT(object, &cohesion_keys, struct wb_bundle_interface, interface);
     if (interface->has_damage)
-        WB_PUT(object, &cohesion, struct wb_bundle_damage, &interface->damage);
+        WB_PUT(object, &cohesion_keys, struct wb_bundle_damage, &interface->damage);
 }
 
 static void describe_mesh(struct wb_json *object, const struct wb_simulated_bundle *bundle)
@@ -185,16 +185,16 @@ static void describe_mesh(struct wb_json *object, const struct wb_simulated_bund
     const struct wb_bundle_mesh *mesh = bundle->mesh;
     struct wb_json *const out = wb_json_set_object(object, "mesh");
 
-    WB_PUT(out, &bundle_mesh, struct wb_bundle_mesh, mesh);
+    WB_PUT(out, &bundle_mesh_keys, struct wb_bundle_mesh, mesh);
     wb_json_set_integer(out, "section_quads", wb_bundle_model_section_quads(mesh));
-    WB_PUT(out, &bundle_mesh, struct wb_bundle_mesh, mesh);
+    WB_PUT(out, &bundle_mesh_keys, struct wb_bundle_mesh, mesh);
     wb_json_set_integer(out, "tape_quads", wb_bundle_model_tape_quads(bundle->model, mesh));
-    WB_PUT(out, &bundle_mesh, struct wb_bundle_mesh, mesh);
+    WB_PUT(out, &bundle_mesh_keys, struct wb_bundle_mesh, mesh);
 }
 
 static void describe_energies(struct wb_json *object, const struct wb_bundle_energies *e)
 {
-    WB_PUT(object, &bundle_energy, struct wb_bundle_energies, e);
+    WB_PUT(object, &bundle_energy_keys, struct wb_bundle_energies, e);
     wb_json_set_number(object, "imbalance_J", wb_bundle_imbalance(e));
 }
 

@@ -74,14 +74,14 @@ static const struct wb_key curve_rows[] = {
 static WB_KEYS(curve, "beam_moment", "A point of the moment curve.");
 
 static const struct wb_key beam_rows[] = {
-    {"elastic", OBJECT | LIST, "rigidity at half, once and twice the length", &elastic},
-    {"moment_curvature", OBJECT | LIST, "moment over curvature", &curve},
+    {"elastic", OBJECT | LIST, "rigidity at half, once and twice the length", &elastic_keys},
+    {"moment_curvature", OBJECT | LIST, "moment over curvature", &curve_keys},
 };
 static WB_KEYS(
     beam, "homogenised_beam",
     "The beam that bends like the bundle; it holds for this length and these ends only.");
 
-static const struct wb_key wb_simulated_section_keys_rows[] = {
+static const struct wb_key wb_simulated_section_rows[] = {
     {"bending", TEXT, "kind of bending: planar, without twist"},
     {"friction_used", RUN(friction), "friction coefficient of the computation"},
     {"friction_is_mean_of_decay", RUN(is_mean),
@@ -91,16 +91,16 @@ static const struct wb_key wb_simulated_section_keys_rows[] = {
     {"unknowns", RUN(unknowns), "unknowns of all stations"},
     {"increments", RUN(increments), "increments of the loading"},
     {"iterations", RUN(iterations), "iterations of the equilibrium"},
-    {"energy", OBJECT | OPTIONAL, "energies at the last row", &section_energy},
-    {"largest", WB_HERE(struct wb_section_run), "largest values of the run", &section_largest},
-    {"homogenised_beam_of_this_length_and_these_ends", OBJECT, "beam that bends alike", &beam},
+    {"energy", OBJECT | OPTIONAL, "energies at the last row", &section_energy_keys},
+    {"largest", WB_HERE(struct wb_section_run), "largest values of the run", &section_largest_keys},
+    {"homogenised_beam_of_this_length_and_these_ends", OBJECT, "beam that bends alike", &beam_keys},
     {"converged", RUN(converged), "the whole loading was computed"},
     {"stopped", RUN(stopped), "stopped by Ctrl-C"},
     {"zero_force_N", RUN(zero_force) | UNKNOWN, "vertical force that `force_N` is counted from"},
     {"wall_s", WB_AT(struct wb_simulated_section, wall), "time of the computation"},
     {"cpu_s", WB_AT(struct wb_simulated_section, cpu), "CPU time of the computation"},
 };
-WB_KEYS(wb_simulated_section_keys, "section_keys", "");
+WB_KEYS(wb_simulated_section, "section_keys", "");
 
 enum {
     ENERGIES = 6
@@ -138,12 +138,12 @@ static void describe_beam(struct wb_json *object, const struct wb_section_run *r
 
     for (int i = 0; i < WB_SECTION_RUN_LENGTHS && run->rigidity[i].length > 0.0; i++) {
         const struct wb_section_run_rigidity *const r = &run->rigidity[i];
-        WB_PUT(wb_json_append_object(lengths), &elastic, struct wb_section_run_rigidity, r);
+        WB_PUT(wb_json_append_object(lengths), &elastic_keys, struct wb_section_run_rigidity, r);
     }
     for (int i = 0; i < run->n_curve; i++) {
         const struct wb_section_homogenise_point *const p = &run->curve[i];
         struct wb_json *const item = wb_json_append_object(points);
-        WB_PUT(item, &curve, struct wb_section_homogenise_point, p);
+        WB_PUT(item, &curve_keys, struct wb_section_homogenise_point, p);
         wb_json_set_number(item, "secant_rigidity_N_mm2", p->moment / p->curvature / WB_NMM2);
     }
 }

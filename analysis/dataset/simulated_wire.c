@@ -117,23 +117,24 @@ static const struct wb_key step_rows[] = {
 };
 static WB_KEYS(step, "step", "A step of the model that was begun.");
 
-static const struct wb_key wb_simulated_wire_keys_rows[] = {
+static const struct wb_key wb_simulated_wire_rows[] = {
     {"name", MODEL(name), "name of the model"},
     {"title", MODEL(title), "title of the model"},
     {"notes", MODEL(notes) | IF_KNOWN, "notes of the model"},
     {"file", TEXT, "file of the model"},
     {"sha256", TEXT | OPTIONAL, "of older datasets: SHA-256 of the model's files"},
     {"law", TEXT, "whether the wire may yield", .choices = "elastic|elastoplastic"},
-    {"parts", OBJECT | LIST, "parts of the wire, from the inside out", &wire_part},
+    {"parts", OBJECT | LIST, "parts of the wire, from the inside out", &wire_part_keys},
     {"substitutes", FLAG, "values of a part replace lost ones"},
-    {"homogenised", OBJECT, "homogenised section", &homogenised},
+    {"homogenised", OBJECT, "homogenised section", &homogenised_keys},
     {"clamp", WB_CHOICE(struct wb_wire_model, clamp), "boundary condition at the clamp",
      .choices = "plane|fixed"},
     {"gravity_m_s2", WB_FULL(struct wb_wire_model, gravity), "gravity: x, y, z"},
-    {"interface", OBJECT | OPTIONAL, "of wire3d: interface of core and jacket", &interface},
-    {"mesh", WB_HERE(struct wb_wire_model) | OPTIONAL, "of wire3d: mesh", &wb_simulated_wire_mesh},
+    {"interface", OBJECT | OPTIONAL, "of wire3d: interface of core and jacket", &interface_keys},
+    {"mesh", WB_HERE(struct wb_wire_model) | OPTIONAL, "of wire3d: mesh",
+     &wb_simulated_wire_mesh_keys},
     {"energy", WB_HERE(struct wb_wire3d_balance) | OPTIONAL, "of wire3d: energies at the end",
-     &solid_energy},
+     &solid_energy_keys},
     {"elements", RUN(n_elements), "number of elements"},
     {"degrees_of_freedom", RUN(n_unknowns), "number of unknowns"},
     {"increments", RUN(increments), "increments of the loading"},
@@ -146,9 +147,9 @@ static const struct wb_key wb_simulated_wire_keys_rows[] = {
     {"wall_s", WB_AT(struct wb_simulated_wire, wall), "time of the computation"},
     {"cpu_s", WB_AT(struct wb_simulated_wire, cpu), "CPU time of the computation"},
     {"peak_memory_MB", NUMBER | OPTIONAL, "largest memory of the process"},
-    {"steps", OBJECT | LIST, "steps of the model that were begun", &step},
+    {"steps", OBJECT | LIST, "steps of the model that were begun", &step_keys},
 };
-WB_KEYS(wb_simulated_wire_keys, "wire_keys", "");
+WB_KEYS(wb_simulated_wire, "wire_keys", "");
 
 static void describe_yield(struct wb_json *object, const struct wb_material *material)
 {
@@ -169,9 +170,9 @@ static void describe_parts(struct wb_json *simulation, const struct wb_wire_mode
     for (int i = 0; i < model->n_parts; i++) {
         const struct wb_wire_model_part *const part = &model->part[i];
         struct wb_json *const object = wb_json_append_object(parts);
-        WB_PUT(object, &wire_part, struct wb_wire_model_part, part);
+        WB_PUT(object, &wire_part_keys, struct wb_wire_model_part, part);
         describe_yield(object, &part->material);
-        WB_PUT(object, &wire_part, struct wb_wire_model_part, part);
+        WB_PUT(object, &wire_part_keys, struct wb_wire_model_part, part);
         substitutes = substitutes || part->is_substitute;
     }
     wb_json_set_boolean(simulation, "substitutes", substitutes);
@@ -206,8 +207,8 @@ static void describe_solid(struct wb_json *simulation, const struct wb_wire_mode
 {
     struct wb_json *const object = wb_json_set_object(simulation, "interface");
     if (model->has_contact) {
-        WB_PUT(object, &interface, struct wb_wire_model, model);
-        WB_PUT(object, &interface, struct wb_wire3d_balance, balance);
+        WB_PUT(object, &interface_keys, struct wb_wire_model, model);
+        WB_PUT(object, &interface_keys, struct wb_wire3d_balance, balance);
     } else {
         wb_json_set_text(object, "kind", "bonded");
     }
@@ -225,7 +226,7 @@ static void describe_steps(struct wb_json *simulation, const struct wb_dataset *
         if (i + 1 < run->n_rows && run->rows[i + 1].step == index)
             continue;
         struct wb_json *const object = wb_json_append_object(steps);
-        WB_PUT(object, &step, struct wb_wire_step, &model->step[index]);
+        WB_PUT(object, &step_keys, struct wb_wire_step, &model->step[index]);
         wb_json_set_integer(object, "last_row", i + 1);
         wb_json_set_number(object, "t_s", dataset->rows[i].t);
         wb_json_set_boolean(object, "complete", run->rows[i].fraction >= 1.0);

@@ -3,14 +3,14 @@
 #include "analysis/keys/row.h"
 #include "base/version.h"
 
-static const struct wb_key wb_keys_tool_rows[] = {
+static const struct wb_key wb_common_tool_rows[] = {
     {"name", TEXT, "program and command"},
     {"version", TEXT, "version of the program"},
     {"revision", TEXT, "revision of the sources that the program was built from"},
     {"confirmed_by_revision", TEXT | OPTIONAL,
      "of a stored simulation: a later revision, whose results are the same within the tolerances"},
 };
-WB_KEYS(wb_keys_tool, "tool", "The program that wrote the file.");
+WB_KEYS(wb_common_tool, "tool", "The program that wrote the file.");
 
 void wb_keys_put_tool(struct wb_json *object, const char *name)
 {
@@ -20,20 +20,20 @@ void wb_keys_put_tool(struct wb_json *object, const char *name)
     wb_json_set_text(tool, "revision", wb_version_revision());
 }
 
-static const struct wb_key wb_keys_excluded_rows[] = {
+static const struct wb_key wb_common_excluded_rows[] = {
     {"by", TEXT, "who excluded the test"},
     {"reason", TEXT, "why the test was excluded"},
     {"date_utc", TEXT | UNKNOWN, "when the test was excluded"},
 };
-WB_KEYS(wb_keys_excluded, "excluded", "The exclusion of a test, from the index of recordings.");
+WB_KEYS(wb_common_excluded, "excluded", "The exclusion of a test, from the index of recordings.");
 
-static const struct wb_key wb_keys_sum_rows[] = {
+static const struct wb_key wb_common_sum_rows[] = {
     {"file", TEXT, "name of the file"},
     {"sha256", TEXT, "SHA-256 of the file"},
 };
-WB_KEYS(wb_keys_sum, "sum", "A file and its checksum.");
+WB_KEYS(wb_common_sum, "sum", "A file and its checksum.");
 
-static const struct wb_key wb_keys_machine_rows[] = {
+static const struct wb_key wb_common_machine_rows[] = {
     {"name", TEXT, "name of the machine"},
     {"kind", TEXT, "kind of test", .choices = "cantilever|three-point|tensile"},
     {"span_mm", NUMBER | OPTIONAL, "distance between the axes of the rollers"},
@@ -50,4 +50,4 @@ static const struct wb_key wb_keys_machine_rows[] = {
      "compliance of machine, load cell and fixture; a list: least and largest"},
     {"speed_mm_s", BAND | OPTIONAL, "speed of the travel; a list: least and largest"},
 };
-WB_KEYS(wb_keys_machine, "machine", "The testing machine, as its machine file describes it.");
+WB_KEYS(wb_common_machine, "machine", "The testing machine, as its machine file describes it.");

@@ -14,6 +14,8 @@
  *         {"moment_N_mm", NUMBER | UNKNOWN, "moment"},
  *     };
  *     static WB_KEYS(point, "point", "A point of the curve.");
+ *     ...
+ *     WB_PUT(object, &point_keys, struct point, &points[i]);
  *
  * Whoever adds a key to a file adds its row; tests/check-files.py rejects files with keys that have
  * no row.

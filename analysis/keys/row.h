@@ -21,9 +21,9 @@ enum {
     IF_KNOWN = 2048 | OPTIONAL /* absent where the number is not known or the text is empty */
 };
 
-/* Defines the object of the rows NAME_rows. */
-#define WB_KEYS(object, name, meaning)                                                             \
-    const struct wb_keys object = {name, meaning, object##_rows, WB_COUNT(object##_rows)}
+/* Defines the object NAME_keys of the rows NAME_rows. */
+#define WB_KEYS(of, name, meaning)                                                                 \
+    const struct wb_keys of##_keys = {name, meaning, of##_rows, WB_COUNT(of##_rows)}
 
 /* The macros below give the type of a row and the place of its value, from the type of the member:
  *

@@ -223,7 +223,8 @@ static const struct wb_key ranking_rows[] = {
     {"R2", RANKING(ranking.r2) | UNKNOWN, "share of the variance that ranks explain"},
     {"R2_low", RANKING(ranking.low) | UNKNOWN, "lower end of its interval"},
     {"R2_high", RANKING(ranking.high) | UNKNOWN, "upper end of its interval"},
-    {"groups", OBJECT | LIST | OPTIONAL, "the groups of inputs; only from R2 = 0.9 on", &group},
+    {"groups", OBJECT | LIST | OPTIONAL, "the groups of inputs; only from R2 = 0.9 on",
+     &group_keys},
 };
 static WB_KEYS(ranking, "ranking", "Which inputs the width of a band depends on.");
 
@@ -239,33 +240,33 @@ static const struct wb_key of_case_rows[] = {
     {"deflection_mm", WB_AT(struct wb_bands_place, at) | OPTIONAL,
      "largest deflection that the band covers"},
     {"force_N", WB_AT(struct wb_bands_place, band) | OPTIONAL, "force at that deflection",
-     &interval},
+     &interval_keys},
     {"deflection_springback", CASE(springback),
-     "springback of the deflection: 1 less the residual over the largest deflection", &interval},
+     "springback of the deflection: 1 less the residual over the largest deflection", &interval_keys},
     {"residual_curvature_ratio", CASE(residual_curvature_ratio),
      "largest curvature along the bundle at zero force over that at the largest deflection",
-     &interval},
-    {"ranking", OBJECT | LIST, "which inputs the bands depend on", &ranking},
+     &interval_keys},
+    {"ranking", OBJECT | LIST, "which inputs the bands depend on", &ranking_keys},
 };
 static WB_KEYS(of_case, "prediction_case", "A case that was predicted.");
 
-static const struct wb_key wb_bands_output_keys_rows[] = {
+static const struct wb_key wb_bands_output_rows[] = {
     {"confidence", NUMBER, "probability of the bands"},
     {"model_error", NUMBER, "standard deviation of the model's error, of the largest value"},
     {"runs", WB_AT(struct wb_bands, runs), "runs of each case"},
     {"seed", WB_AT(struct wb_bands, seed), "seed of the draws"},
     {"stopped", WB_AT(struct wb_bands, stopped), "interrupted: the last case is missing"},
     {"laws_of_wires", TEXT | LIST, "source of the law of each kind of wire"},
-    {"cases", OBJECT | LIST, "the cases", &of_case},
+    {"cases", OBJECT | LIST, "the cases", &of_case_keys},
 };
-WB_KEYS(wb_bands_output_keys, "uncertainty", "Bands of a bundle's prediction.");
+WB_KEYS(wb_bands_output, "uncertainty", "Bands of a bundle's prediction.");
 
 /* Below R2 = 0.9 no shares are written; R2 itself shows why. */
 static void append_ranking(struct wb_json *array, const struct wb_bands *bands,
                            const struct wb_bands_ranking *of)
 {
     struct wb_json *const object = wb_json_append_object(array);
-    WB_PUT(object, &ranking, struct wb_bands_ranking, of);
+    WB_PUT(object, &ranking_keys, struct wb_bands_ranking, of);
     if (!of->ranking.is_valid)
         return;
     struct wb_json *const groups = wb_json_set_array(object, "groups");
@@ -273,7 +274,7 @@ static void append_ranking(struct wb_json *array, const struct wb_bands *bands,
         const struct wb_ranking_share *const share = &of->ranking.group[g];
         struct wb_json *const item = wb_json_append_object(groups);
         wb_json_set_text(item, "group", bands->inputs.group_name[share->group]);
-        WB_PUT(item, &group, struct wb_ranking_share, share);
+        WB_PUT(item, &group_keys, struct wb_ranking_share, share);
     }
 }
 
@@ -281,12 +282,12 @@ static void append_case(struct wb_json *array, const struct wb_bands *bands,
                         const struct wb_bands_case *c)
 {
     struct wb_json *const object = wb_json_append_object(array);
-    WB_PUT(object, &of_case, struct wb_bands_case, c);
+    WB_PUT(object, &of_case_keys, struct wb_bands_case, c);
     wb_json_set_text(object, "tape_outline", outline(c));
-    WB_PUT(object, &of_case, struct wb_bands_case, c);
+    WB_PUT(object, &of_case_keys, struct wb_bands_case, c);
     if (last_force(c))
-        WB_PUT(object, &of_case, struct wb_bands_place, last_force(c));
-    WB_PUT(object, &of_case, struct wb_bands_case, c);
+        WB_PUT(object, &of_case_keys, struct wb_bands_place, last_force(c));
+    WB_PUT(object, &of_case_keys, struct wb_bands_case, c);
     struct wb_json *const rankings = wb_json_set_array(object, "ranking");
     for (int i = 0; i < c->n_rankings; i++)
         append_ranking(rankings, bands, &c->ranking[i]);

@@ -231,7 +231,7 @@ static const struct wb_key amends_rows[] = {
 };
 static WB_KEYS(amends, "amends", "The report that this one replaces.");
 
-static const struct wb_key wb_laboratory_keys_rows[] = {
+static const struct wb_key wb_laboratory_rows[] = {
     {"report", LABORATORY(report) | IF_KNOWN, "number of the report"},
     {"name", LABORATORY(name) | IF_KNOWN, "name of the laboratory"},
     {"address", LABORATORY(address) | IF_KNOWN, "address of the laboratory"},
@@ -251,11 +251,10 @@ static const struct wb_key wb_laboratory_keys_rows[] = {
     {"authorised_by", LABORATORY(authorised_by) | IF_KNOWN, "who authorises the report"},
     {"decision_rule", WB_CHOICE(struct wb_laboratory, rule), "rule by which limits are judged",
      .choices = "simple|guarded"},
-    {"amends", OBJECT | OPTIONAL, "report that this one replaces", &amends},
+    {"amends", OBJECT | OPTIONAL, "report that this one replaces", &amends_keys},
     {"missing", TEXT | LIST, "required fields that the campaign file lacks"},
 };
-WB_KEYS(wb_laboratory_keys, "laboratory",
-        "The fields of a laboratory, as the campaign file has them.");
+WB_KEYS(wb_laboratory, "laboratory", "The fields of a laboratory, as the campaign file has them.");
 
 void wb_laboratory_put_numbers(struct wb_json *root, const struct wb_laboratory *laboratory)
 {
@@ -264,7 +263,7 @@ void wb_laboratory_put_numbers(struct wb_json *root, const struct wb_laboratory 
     struct wb_json *const of = wb_json_set_object(root, "laboratory");
     WB_PUT(of, &wb_laboratory_keys, struct wb_laboratory, laboratory);
     if (laboratory->amends.report[0])
-        WB_PUT(wb_json_set_object(of, "amends"), &amends, struct wb_laboratory, laboratory);
+        WB_PUT(wb_json_set_object(of, "amends"), &amends_keys, struct wb_laboratory, laboratory);
     struct wb_json *const missing = wb_json_set_array(of, "missing");
     for (size_t i = 0; i < WB_COUNT(fields); i++) {
         if (is_missing(laboratory, &fields[i]))

@@ -6,11 +6,11 @@
 
 #define CAMPAIGN(member) WB_AT(struct wb_campaign, member)
 
-static const struct wb_key wb_numbers_campaign_keys_rows[] = {
+static const struct wb_key wb_numbers_campaign_rows[] = {
     {"file", CAMPAIGN(name), "name of the campaign file"},
     {"sha256", CAMPAIGN(sha256), "SHA-256 of the campaign file"},
 };
-WB_KEYS(wb_numbers_campaign_keys, "campaign", "The campaign file.");
+WB_KEYS(wb_numbers_campaign, "campaign", "The campaign file.");
 
 static const struct wb_key report_end_rows[] = {
     {"laboratory", OBJECT | OPTIONAL, "fields of a laboratory", &wb_laboratory_keys},
@@ -18,19 +18,19 @@ static const struct wb_key report_end_rows[] = {
 };
 static WB_KEYS(report_end, "report_end", "");
 
-static const struct wb_key wb_numbers_head_keys_rows[] = {
+static const struct wb_key wb_numbers_head_rows[] = {
     {"title", TEXT, "title of the campaign"},
     {"data", TEXT, "origin of the data", .choices = "measured|measured (virtual rig)|simulation"},
     {"schema", INTEGER, "layout of the file, 1"},
-    {"tool", OBJECT, "program that wrote the report", &wb_keys_tool},
+    {"tool", OBJECT, "program that wrote the report", &wb_common_tool_keys},
     {"campaign", OBJECT, "campaign file", &wb_numbers_campaign_keys},
     {"complete", WB_AT(struct wb_kind_outcome, is_complete),
      "false: data are missing (exit code 3)"},
     {"limit_exceeded", WB_AT(struct wb_kind_outcome, exceeds_limit),
      "true: a limit of the campaign is exceeded (exit code 4)"},
-    {.of = &report_end},
+    {.of = &report_end_keys},
 };
-WB_KEYS(wb_numbers_head_keys, "report_head", "");
+WB_KEYS(wb_numbers_head, "report_head", "");
 
 void wb_numbers_put_title(struct wb_json *root, const char *title, const char *data)
 {

@@ -97,14 +97,14 @@ const struct wb_json *wb_simulation_of(const struct wb_simulation_result *result
     return wb_json_get(result->dataset.document, "simulation");
 }
 
-static const struct wb_key wb_simulation_state_keys_rows[] = {
+static const struct wb_key wb_simulation_state_rows[] = {
     {"dataset", WB_AT(struct wb_simulation, name), "name of the dataset"},
     {"state", WB_CHOICE(struct wb_simulation_result, state), "whether the dataset is used",
      .choices = "not wanted|missing|outdated|refused|used"},
     {"command", TEXT, "command that computes it"},
     {"problem", TEXT | OPTIONAL, "why it is not used"},
 };
-WB_KEYS(wb_simulation_state_keys, "simulation_state", "");
+WB_KEYS(wb_simulation_state, "simulation_state", "");
 
 void wb_simulation_describe(struct wb_json *object, const struct wb_simulation *wanted,
                             const struct wb_simulation_result *result)

@@ -9,8 +9,9 @@
 const struct wb_schema_document wb_schema_documents[WB_SCHEMA_DOCUMENTS] = {
     {"dataset", "dataset.json of wirebench", &wb_schema_dataset},
     {"report", "report.json of wirebench", &wb_schema_report},
-    {"manifest", "manifest.json of wirebench", &wb_schema_manifest},
-    {"properties", "properties file of wirebench, its YAML read as JSON", &wb_schema_properties},
+    {"manifest", "manifest.json of wirebench", &wb_schema_manifest_keys},
+    {"properties", "properties file of wirebench, its YAML read as JSON",
+     &wb_schema_properties_keys},
 };
 
 const struct wb_schema_document *wb_schema_find(const char *name)

@@ -57,39 +57,39 @@ static WB_KEYS(piece, "test_piece",
 static const struct wb_key common_rows[] = {
     {"schema", INTEGER, "layout of the file, 1"},
     {"name", TEXT, "name of the dataset"},
-    {"test", OBJECT, "what other commands need of the test", &test},
+    {"test", OBJECT, "what other commands need of the test", &test_keys},
 };
 static WB_KEYS(common, "dataset_keys", "");
 
 static const struct wb_key aligned_rows[] = {
-    {.of = &common},
-    {.of = &wb_align_keys},
+    {.of = &common_keys},
+    {.of = &wb_align_document_keys},
 };
 static WB_KEYS(aligned, "dataset_of_recording", "The dataset of a recording, by `align`.");
 
 static const struct wb_key imported_rows[] = {
-    {.of = &common},
-    {"tool", OBJECT, "program that imported the file", &wb_keys_tool},
+    {.of = &common_keys},
+    {"tool", OBJECT, "program that imported the file", &wb_common_tool_keys},
     {"import", OBJECT, "the file", &wb_machine_import_keys},
     {"complete", FLAG, "false: the file is cut, or there are gaps in time"},
-    {"machine", OBJECT, "testing machine", &wb_keys_machine},
-    {"test_piece", OBJECT, "what else is known of the specimen", &piece},
+    {"machine", OBJECT, "testing machine", &wb_common_machine_keys},
+    {"test_piece", OBJECT, "what else is known of the specimen", &piece_keys},
 };
 static WB_KEYS(imported, "dataset_of_machine",
                "The dataset of a testing machine, by `import force`.");
 
 static const struct wb_key simulated_rows[] = {
-    {.of = &common},
+    {.of = &common_keys},
     {"complete", FLAG | OPTIONAL,
      "whether the whole loading was computed; of `cantilever` and `bending3p` see `converged`"},
     {"simulation", OBJECT, "the computation", &wb_schema_simulation},
-    {"tool", OBJECT, "program that computed the dataset", &wb_keys_tool},
-    {"machine", OBJECT | OPTIONAL, "of `bending3p`: the testing machine", &wb_keys_machine},
-    {"test_piece", OBJECT | OPTIONAL, "of `bending3p`: the specimen", &piece},
+    {"tool", OBJECT, "program that computed the dataset", &wb_common_tool_keys},
+    {"machine", OBJECT | OPTIONAL, "of `bending3p`: the testing machine", &wb_common_machine_keys},
+    {"test_piece", OBJECT | OPTIONAL, "of `bending3p`: the specimen", &piece_keys},
 };
 static WB_KEYS(simulated, "dataset_of_simulation", "The dataset of a simulation, by `solve`.");
 
-static const struct wb_keys *const kinds[] = {&aligned, &imported, &simulated, NULL};
+static const struct wb_keys *const kinds[] = {&aligned_keys, &imported_keys, &simulated_keys, NULL};
 const struct wb_keys wb_schema_dataset = {
     "dataset", "A dataset comes from a recording, a testing machine or a simulation.",
     .alternatives = kinds};

@@ -61,8 +61,8 @@ static const struct wb_key calibration_rows[] = {
     {"virtual_rig", FLAG | OPTIONAL, "the data come from a virtual rig"},
     {"simulation", FLAG | OPTIONAL, "the data come from a simulation"},
     {"tool", TEXT | OPTIONAL, "program, version and revision"},
-    {"settings", OBJECT | OPTIONAL, "settings of a calibration on whole cycles", &settings},
-    {"datasets", OBJECT | LIST | OPTIONAL, "data that the calibration used", &dataset},
+    {"settings", OBJECT | OPTIONAL, "settings of a calibration on whole cycles", &settings_keys},
+    {"datasets", OBJECT | LIST | OPTIONAL, "data that the calibration used", &dataset_keys},
 };
 static WB_KEYS(calibration, "properties_calibration", "How the properties were found.");
 
@@ -78,7 +78,7 @@ static const struct wb_key rule_rows[] = {
     {"tested", FLAG | OPTIONAL, "unloading was measured, which tests the hardening rule"},
     {"supported", FLAG | OPTIONAL,
      "the law fits loading and unloading within 3 % of F_max; of three-point bending 0.5 %"},
-    {"ranked", OBJECT | LIST | OPTIONAL, "all laws that were fitted, the best first", &rank},
+    {"ranked", OBJECT | LIST | OPTIONAL, "all laws that were fitted, the best first", &rank_keys},
 };
 static WB_KEYS(rule, "properties_hardening_rule", "The choice of the law.");
 
@@ -91,7 +91,7 @@ static const struct wb_key specimen_rows[] = {
      "distance of the middle of the natural shape from that of an even curvature"},
     {"level_mm", NUMBER | OPTIONAL, "level of zero deflection"},
     {"misfit", NUMBER | OPTIONAL, "RMS of the force residuals over F_max"},
-    {.of = &wb_keys_ludwik},
+    {.of = &wb_law_ludwik_keys},
     {"ludwik_misfit", NUMBER | OPTIONAL, "RMS of the relative differences of the moment"},
 };
 static WB_KEYS(specimen, "properties_specimen",
@@ -136,8 +136,8 @@ static const struct wb_key three_point_rows[] = {
     {"compliance_known", FLAG | OPTIONAL, "the machine file states the compliance"},
     {"series", INTEGER | OPTIONAL, "number of series"},
     {"series_deviation", NUMBER | OPTIONAL, "standard deviation of ln EI between series"},
-    {"bands", OBJECT | LIST | OPTIONAL, "fits with the ends of what is not known", &band},
-    {"tests", OBJECT | LIST | OPTIONAL, "each test by itself", &test},
+    {"bands", OBJECT | LIST | OPTIONAL, "fits with the ends of what is not known", &band_keys},
+    {"tests", OBJECT | LIST | OPTIONAL, "each test by itself", &test_keys},
 };
 static WB_KEYS(three_point, "three_point",
                "The bench and the tests of a calibration on three-point bending.");
@@ -157,28 +157,28 @@ static const struct wb_key wb_schema_properties_rows[] = {
     {"wire", TEXT, "name of the product"},
     {"outer_diameter_mm", NUMBER, "outer diameter"},
     {"mass_per_length_kg_m", NUMBER, "mass per length"},
-    {.of = &wb_keys_ludwik},
+    {.of = &wb_law_ludwik_keys},
     {"poissons_ratio", NUMBER, "Poisson's ratio"},
     {"deviations", OBJECT | OPTIONAL, "standard uncertainties; absent with one sample",
-     &deviations},
+     &deviations_keys},
     {"method", TEXT | OPTIONAL,
      "route of the calibration; absent: `paper` where there is `calibration`",
      .choices = "cycle|paper|three-point"},
     {"law", OBJECT | OPTIONAL,
      "law of the wire; the four numbers are then its Ludwik equivalent. Absent: Ludwik's law with "
      "isotropic hardening",
-     &wb_keys_law_of_file},
+     &wb_law_file_keys},
     {"ludwik_misfit", NUMBER | OPTIONAL,
      "of the equivalent: RMS of the relative differences of the moment"},
     {.type = OPTIONAL, .quantities = true},
     {"springback_ratio", OBJECT | OPTIONAL,
-     "name of `residual_curvature_ratio` before version 0.1.0", &old_ratio},
+     "name of `residual_curvature_ratio` before version 0.1.0", &old_ratio_keys},
     {"largest_curvature_1_m", NUMBER | OPTIONAL, "curvature up to which the law was measured"},
-    {"hardening_rule", OBJECT | OPTIONAL, "choice of the law", &rule},
-    {"specimens", OBJECT | LIST | OPTIONAL, "each specimen by itself", &specimen},
+    {"hardening_rule", OBJECT | OPTIONAL, "choice of the law", &rule_keys},
+    {"specimens", OBJECT | LIST | OPTIONAL, "each specimen by itself", &specimen_keys},
     {"three_point", OBJECT | OPTIONAL, "of three-point bending: the bench and the tests",
-     &three_point},
-    {"calibration", OBJECT | OPTIONAL, "how the properties were found", &calibration},
+     &three_point_keys},
+    {"calibration", OBJECT | OPTIONAL, "how the properties were found", &calibration_keys},
 };
 WB_KEYS(wb_schema_properties, "properties",
         "The properties of a wire, from a calibration or by hand.");

@@ -36,8 +36,8 @@ static const struct wb_key build_rows[] = {
     {"compiler", TEXT, "compiler"},
     {"options", TEXT, "options of the compiler that choose machine code"},
     {"processor", TEXT, "vector instructions, and the processor that OpenBLAS assumes"},
-    {"libraries", OBJECT | LIST, "libraries of the process", &wb_keys_sum},
-    {"fonts", OBJECT | LIST, "fonts of the report", &wb_keys_sum},
+    {"libraries", OBJECT | LIST, "libraries of the process", &wb_common_sum_keys},
+    {"fonts", OBJECT | LIST, "fonts of the report", &wb_common_sum_keys},
 };
 static WB_KEYS(build, "build", "The program that made the report.");
 
@@ -46,8 +46,8 @@ static const struct wb_key wb_schema_manifest_rows[] = {
     {"title", TEXT, "title of the report"},
     {"amends", TEXT | OPTIONAL, "number of the report that this one replaces"},
     {"campaign", OBJECT, "campaign file", &wb_numbers_campaign_keys},
-    {"inputs", OBJECT | LIST, "inputs of the report, sorted", &manifest_input},
-    {"files", OBJECT | LIST, "files of the report", &manifest_file},
-    {"build", OBJECT, "program that made the report", &build},
+    {"inputs", OBJECT | LIST, "inputs of the report, sorted", &manifest_input_keys},
+    {"files", OBJECT | LIST, "files of the report", &manifest_file_keys},
+    {"build", OBJECT, "program that made the report", &build_keys},
 };
 WB_KEYS(wb_schema_manifest, "manifest", "The inputs and files of a signed report.");

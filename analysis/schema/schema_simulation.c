@@ -27,7 +27,7 @@ static const struct wb_key law_rows[] = {
     {"form", TEXT, "form of the law", .choices = "ludwik|parallel|chaboche"},
     {"isotropic_share", NUMBER, "share of the hardening that is isotropic"},
     {"rule", TEXT | OPTIONAL, "hardening rule, where it is `combined`"},
-    {.of = &wb_keys_law_numbers},
+    {.of = &wb_law_numbers_keys},
 };
 static WB_KEYS(law, "input_law", "The law of a wire.");
 
@@ -39,7 +39,7 @@ static WB_KEYS(law, "input_law", "The law of a wire.");
 
 static const struct wb_key cantilever_inputs_rows[] = {
     SOLVER("cantilever"),
-    {"law", OBJECT, "law of the wire", &law},
+    {"law", OBJECT, "law of the wire", &law_keys},
     {"outer_diameter_mm", NUMBER, "outer diameter"},
     {"length_mm", NUMBER, "free length"},
     {"deflection_mm", NUMBER, "largest deflection"},
@@ -54,7 +54,7 @@ static WB_KEYS(cantilever_inputs, "inputs_of_cantilever",
 static const struct wb_key input_part_rows[] = {
     {"outer_diameter_mm", NUMBER, "outer diameter of the part"},
     {"density_g_cm3", NUMBER, "density"},
-    {.of = &material},
+    {.of = &material_keys},
 };
 static WB_KEYS(input_part, "input_part", "A part of the wire.");
 
@@ -81,14 +81,14 @@ static WB_KEYS(history, "input_step", "A step of the loading.");
 static const struct wb_key wire_inputs_rows[] = {
     SOLVER("wire3d|wire1d"),
     {"length_mm", NUMBER, "free length"},
-    {"parts", OBJECT | LIST, "parts from the inside out", &input_part},
-    {"interface", OBJECT | OPTIONAL, "contact between two parts, of a solid", &input_contact},
+    {"parts", OBJECT | LIST, "parts from the inside out", &input_part_keys},
+    {"interface", OBJECT | OPTIONAL, "contact between two parts, of a solid", &input_contact_keys},
     {"clamp", TEXT, "boundary condition at the clamp", .choices = "plane|fixed"},
     {"gravity", NUMBER | LIST, "gravity: x, y, z", .unit = "m/s2"},
     {"strand_mm", NUMBER, "length of the strand; 0: a vertical force"},
-    {"mesh", OBJECT | OPTIONAL, "mesh, of a solid", &wb_simulated_wire_mesh},
+    {"mesh", OBJECT | OPTIONAL, "mesh, of a solid", &wb_simulated_wire_mesh_keys},
     {"fields_at_mm", NUMBER | LIST, "places of the cross sections whose fields are kept"},
-    {"history", OBJECT | LIST, "steps of the loading", &history},
+    {"history", OBJECT | LIST, "steps of the loading", &history_keys},
 };
 static WB_KEYS(wire_inputs, "inputs_of_wire",
                "All that decides the numbers of `solve wire3d` or `wire1d`.");
@@ -96,20 +96,20 @@ static WB_KEYS(wire_inputs, "inputs_of_wire",
 static const struct wb_key input_wire_rows[] = {
     {"outer_diameter_mm", NUMBER, "outer diameter of the wire"},
     {"density_g_cm3", NUMBER, "density"},
-    {.of = &material},
+    {.of = &material_keys},
 };
 static WB_KEYS(input_wire, "input_wire", "A kind of wire of a bundle in explicit dynamics.");
 
 static const struct wb_key section_wire_rows[] = {
     {"outer_diameter_mm", NUMBER, "outer diameter of the wire"},
     {"density_g_cm3", NUMBER, "density"},
-    {.of = &law},
+    {.of = &law_keys},
 };
 static WB_KEYS(section_wire, "input_wire_of_section",
                "A kind of wire of a bundle in the section model.");
 
 static const struct wb_key tape_rows[] = {
-    {.of = &material},
+    {.of = &material_keys},
     {"density_g_cm3", NUMBER, "density"},
     {"layer_thickness_mm", NUMBER, "thickness of one layer"},
     {"layout", TEXT, "layout of the tape", .choices = "sleeve|helix"},
@@ -157,12 +157,12 @@ static WB_KEYS(run, "input_run",
 
 static const struct wb_key bundle_tail_rows[] = {
     {"places", TEXT | LIST, "place of each wire's axis, as `wire 1 at 0.808290, 0.000000 mm`"},
-    {"tape", OBJECT | OPTIONAL, "tape", &tape},
+    {"tape", OBJECT | OPTIONAL, "tape", &tape_keys},
     {"length_mm", NUMBER, "free length"},
-    {"interface", OBJECT, "contact between wires, and the bond of the tape", &input_interface},
+    {"interface", OBJECT, "contact between wires, and the bond of the tape", &input_interface_keys},
     {"potted_mm", NUMBER, "length from the clamp over which epoxy holds wires and tape"},
     {"tip", TEXT, "end of the bundle", .choices = "free|capped"},
-    {"run", OBJECT, "the run", &run},
+    {"run", OBJECT, "the run", &run_keys},
     {"strand_mm", NUMBER, "length of the strand; 0: a vertical force"},
     {"weight", FLAG, "weight acts"},
 };
@@ -170,17 +170,17 @@ static WB_KEYS(bundle_tail, "bundle_inputs", "");
 
 static const struct wb_key bundle_inputs_rows[] = {
     SOLVER("bundle"),
-    {"wires", OBJECT | LIST, "kinds of wire", &input_wire},
-    {"mesh", OBJECT, "mesh", &input_mesh},
-    {.of = &bundle_tail},
+    {"wires", OBJECT | LIST, "kinds of wire", &input_wire_keys},
+    {"mesh", OBJECT, "mesh", &input_mesh_keys},
+    {.of = &bundle_tail_keys},
 };
 static WB_KEYS(bundle_inputs, "inputs_of_bundle",
                "All that decides the numbers of `solve bundle`.");
 
 static const struct wb_key section_inputs_rows[] = {
     SOLVER("section"),
-    {"wires", OBJECT | LIST, "kinds of wire", &section_wire},
-    {.of = &bundle_tail},
+    {"wires", OBJECT | LIST, "kinds of wire", &section_wire_keys},
+    {.of = &bundle_tail_keys},
 };
 static WB_KEYS(section_inputs, "inputs_of_section",
                "All that decides the numbers of `solve bundle --model section`.");
@@ -202,17 +202,17 @@ static const struct wb_key computed_law_rows[] = {
     {"hardening", TEXT | OPTIONAL, "hardening rule",
      .choices = "isotropic|kinematic|mixed|combined"},
     {"isotropic_share", NUMBER | OPTIONAL, "share of the hardening that is isotropic"},
-    {.of = &wb_keys_law_numbers},
+    {.of = &wb_law_numbers_keys},
     {"properties_source", TEXT, "source of the law's numbers"},
-    {.of = &ended},
+    {.of = &ended_keys},
 };
 static WB_KEYS(computed_law, "computed_law", "");
 
 static const struct wb_key cantilever_rows[] = {
     {"model", TEXT, "the solver", .choices = "cantilever"},
     {"inputs", OBJECT | OPTIONAL, "all that decides the numbers; absent in older datasets",
-     &cantilever_inputs},
-    {.of = &computed_law},
+     &cantilever_inputs_keys},
+    {.of = &computed_law_keys},
     {"zero_force_N", NUMBER | OPTIONAL, "vertical force that `force_N` is counted from"},
 };
 static WB_KEYS(cantilever, "simulation_cantilever",
@@ -220,7 +220,7 @@ static WB_KEYS(cantilever, "simulation_cantilever",
 
 static const struct wb_key bending_rows[] = {
     {"model", TEXT, "the solver", .choices = "bending3p"},
-    {.of = &computed_law},
+    {.of = &computed_law_keys},
 };
 static WB_KEYS(bending, "simulation_bending3p", "`solve bending3p`, with the numbers of the law.");
 
@@ -229,14 +229,14 @@ static WB_KEYS(bending, "simulation_bending3p", "`solve bending3p`, with the num
 static const struct wb_key wire_rows[] = {
     {"model", TEXT, "the solver", .choices = "wire3d|wire1d"},
     {"inputs", OBJECT | OPTIONAL, "all that decides the numbers; absent in older datasets",
-     &wire_inputs},
+     &wire_inputs_keys},
     {.of = &wb_simulated_wire_keys},
 };
 static WB_KEYS(wire, "simulation_wire", "`solve wire3d` and `solve wire1d`.");
 
 static const struct wb_key bundle_rows[] = {
     {"model", TEXT, "the solver", .choices = "bundle"},
-    {"inputs", OBJECT, "all that decides the numbers", &bundle_inputs},
+    {"inputs", OBJECT, "all that decides the numbers", &bundle_inputs_keys},
     {.of = &wb_simulated_bundle_head_keys},
     {"surface_deflection_mm", NUMBER | OPTIONAL,
      "deflection at which surface.csv was taken; absent: there is none"},
@@ -246,15 +246,15 @@ static WB_KEYS(bundle, "simulation_bundle", "`solve bundle` in explicit dynamics
 
 static const struct wb_key section_rows[] = {
     {"model", TEXT, "the solver", .choices = "section"},
-    {"inputs", OBJECT, "all that decides the numbers", &section_inputs},
+    {"inputs", OBJECT, "all that decides the numbers", &section_inputs_keys},
     {.of = &wb_simulated_bundle_head_keys},
     {.of = &wb_simulated_section_keys},
     {"uncertainty", OBJECT | OPTIONAL, "of `--uncertain`: bands", &wb_bands_output_keys},
 };
 static WB_KEYS(section, "simulation_section", "`solve bundle --model section`.");
 
-static const struct wb_keys *const solvers[] = {&cantilever, &bending, &wire,
-                                                &bundle,     &section, NULL};
+static const struct wb_keys *const solvers[] = {&cantilever_keys, &bending_keys, &wire_keys,
+                                                &bundle_keys,     &section_keys, NULL};
 const struct wb_keys wb_schema_simulation = {
     "simulation", "The computation of a dataset; its keys depend on the solver.",
     .alternatives = solvers};

@@ -11,7 +11,7 @@ extern const struct wb_keys wb_schema_simulation;
 /* Roots. */
 extern const struct wb_keys wb_schema_dataset;
 extern const struct wb_keys wb_schema_report;
-extern const struct wb_keys wb_schema_manifest;
-extern const struct wb_keys wb_schema_properties;
+extern const struct wb_keys wb_schema_manifest_keys;
+extern const struct wb_keys wb_schema_properties_keys;
 
 #endif

@@ -18,10 +18,10 @@ static const struct wb_key bound_rows[] = {
 static WB_KEYS(bound, "bound", "A value of a validation and its bound.");
 
 static const struct wb_key bounds_rows[] = {
-    {"loading", OBJECT, "RMS error on loading over F_max", &bound},
-    {"unloading", OBJECT, "RMS error on unloading over F_max", &bound},
-    {"residual_deflection_mm", OBJECT, "error of the residual deflection", &bound},
-    {"shapes_mm", OBJECT, "RMS distance of the markers", &bound},
+    {"loading", OBJECT, "RMS error on loading over F_max", &bound_keys},
+    {"unloading", OBJECT, "RMS error on unloading over F_max", &bound_keys},
+    {"residual_deflection_mm", OBJECT, "error of the residual deflection", &bound_keys},
+    {"shapes_mm", OBJECT, "RMS distance of the markers", &bound_keys},
 };
 static WB_KEYS(bounds, "bounds", "Bounds of a validation.");
 
@@ -53,19 +53,19 @@ static const struct wb_key loop_rows[] = {
 };
 static WB_KEYS(loop, "loop_energy", "The energy loss of a later cycle.");
 
-static const struct wb_key wb_validate_json_keys_rows[] = {
+static const struct wb_key wb_validate_json_rows[] = {
     {"clamp_curvature_1_m", RESULT(cycles.clamp_curvature) | UNKNOWN | OPTIONAL,
      "computed curvature at the clamp"},
     {"beyond_known_curvature", RESULT(is_beyond) | OPTIONAL,
      "that curvature exceeds the one up to which the law was measured"},
-    {"bounds", OBJECT | OPTIONAL, "errors and their bounds", &bounds},
+    {"bounds", OBJECT | OPTIONAL, "errors and their bounds", &bounds_keys},
     {"unloading", WB_HERE(struct wb_validate_result) | UNKNOWN | OPTIONAL,
-     "prediction of the unloading; null: no unloading was measured", &unloading},
+     "prediction of the unloading; null: no unloading was measured", &unloading_keys},
     {"residual_deflection_mm", WB_HERE(struct wb_validate_result) | OPTIONAL, "residual deflection",
-     &residual},
-    {"loop_energy_mJ", LOOPS | OPTIONAL, "energy loss of the later cycles", &loop},
+     &residual_keys},
+    {"loop_energy_mJ", LOOPS | OPTIONAL, "energy loss of the later cycles", &loop_keys},
 };
-WB_KEYS(wb_validate_json_keys, "validation_cycles", "");
+WB_KEYS(wb_validate_json, "validation_cycles", "");
 
 void wb_validate_json_put_cycles(struct wb_json *item, const struct wb_validate_result *r)
 {

@@ -368,7 +368,7 @@ static const struct wb_key contribution_rows[] = {
 };
 static WB_KEYS(contribution, "contribution", "A contribution to the uncertainty of a quantity.");
 
-static const struct wb_key wb_cycle_budget_keys_rows[] = {
+static const struct wb_key wb_cycle_budget_rows[] = {
     {"quantity", TEXT, "the quantity",
      .choices = "flexural_rigidity|residual_curvature_ratio|loop_energy|"
                 "deflection_springback|moment|secant_stiffness|"
@@ -379,9 +379,9 @@ static const struct wb_key wb_cycle_budget_keys_rows[] = {
     {"degrees_of_freedom", BUDGET(effective_degrees) | UNKNOWN,
      "effective degrees of freedom; null: infinite"},
     {"coverage_factor", BUDGET(factor) | UNKNOWN, "coverage factor for 95 %"},
-    {"contributions", OBJECT | LIST, "contributions", &contribution},
+    {"contributions", OBJECT | LIST, "contributions", &contribution_keys},
 };
-WB_KEYS(wb_cycle_budget_keys, "budget", "The uncertainty budget of a quantity.");
+WB_KEYS(wb_cycle_budget, "budget", "The uncertainty budget of a quantity.");
 
 static void put_budget(struct wb_json *array, const char *quantity, double curvature,
                        const struct wb_budget *budget)

@@ -623,7 +623,7 @@ enum wb_status wb_moment_curvature_compare(const struct wb_moment_cloud *const *
 
 #define POINT(member) WB_AT(struct wb_moment_point, member)
 
-static const struct wb_key wb_moment_curvature_keys_rows[] = {
+static const struct wb_key wb_moment_curvature_rows[] = {
     {"curvature_1_m", POINT(curvature), "curvature by the markers"},
     {"curvature_deviation_1_m", POINT(deviation), "standard uncertainty of the curvature"},
     {"moment_N_mm", POINT(moment), "moment by the strand's tension"},
@@ -632,7 +632,7 @@ static const struct wb_key wb_moment_curvature_keys_rows[] = {
     {"s_mm", POINT(s), "arc length of the place"},
     {"band", POINT(is_band), "the wire is bent too little there: the point shows scatter only"},
 };
-WB_KEYS(wb_moment_curvature_keys, "moment_point", "A point of M over curvature, without a law.");
+WB_KEYS(wb_moment_curvature, "moment_point", "A point of M over curvature, without a law.");
 
 void wb_moment_curvature_put(struct wb_json *array, const struct wb_moment_cloud *cloud)
 {

@@ -26,8 +26,7 @@ static const struct wb_key rank_rows[] = {
      "the law is in the ranges over laws: chosen, or with at most twice the best misfit"},
     {"flexural_rigidity_N_mm2", RANK(rigidity.value) | UNKNOWN, "EI at zero curvature by this law"},
     {"residual_curvature_ratio", NUMBER | UNKNOWN, "residual curvature ratio by this law"},
-    {"parameters", OBJECT | OPTIONAL, "the law's numbers, of a law that counts",
-     &wb_keys_law_of_json},
+    {"parameters", OBJECT | OPTIONAL, "the law's numbers, of a law that counts", &wb_law_json_keys},
 };
 static WB_KEYS(rank, "ranked_law", "A law that was fitted.");
 
@@ -42,7 +41,7 @@ static const struct wb_key rule_rows[] = {
      "noise of a point by repeated cycles, over F_max"},
     {"independent_residuals", CYCLE(n_independent) | UNKNOWN,
      "number of independent residuals of a specimen; residuals of neighbours are correlated"},
-    {"ranked", OBJECT | LIST, "all laws that were fitted, the best first", &rank},
+    {"ranked", OBJECT | LIST, "all laws that were fitted, the best first", &rank_keys},
 };
 static WB_KEYS(rule, "hardening_rule", "The choice of the law.");
 
@@ -97,32 +96,33 @@ static const struct wb_key specimen_rows[] = {
     {"residual_deflection_mm", MEMBER(data.residual_deflection) | UNKNOWN,
      "measured residual deflection"},
     {"outliers", INTEGER, "points left out as outliers"},
-    {"law_correlation", OBJECT, "correlations of the law's parameters", &correlation},
-    {"ludwik_equivalent", OBJECT, "Ludwik equivalent of the specimen", &equivalent},
+    {"law_correlation", OBJECT, "correlations of the law's parameters", &correlation_keys},
+    {"ludwik_equivalent", OBJECT, "Ludwik equivalent of the specimen", &equivalent_keys},
 };
 static WB_KEYS(specimen, "cycle_specimen", "A specimen by itself.");
 
-static const struct wb_key wb_cycle_json_keys_rows[] = {
+static const struct wb_key wb_cycle_json_rows[] = {
     {.type = ESTIMATES, .quantities = true},
     {"flexural_rigidity_resolved", CYCLE(is_rigidity_resolved),
      "EI at zero curvature is within 2 % of a stiffness that the data resolve"},
     {"largest_curvature_1_m", CYCLE(largest_curvature) | UNKNOWN,
      "curvature at the clamp that all specimens reached"},
-    {"hardening_rule", OBJECT, "choice of the law", &rule},
-    {"law", OBJECT, "means over the specimens of the law's numbers", &wb_keys_law_of_json},
-    {"ludwik_equivalent", OBJECT, "Ludwik law that bends alike on a first loading", &equivalent},
+    {"hardening_rule", OBJECT, "choice of the law", &rule_keys},
+    {"law", OBJECT, "means over the specimens of the law's numbers", &wb_law_json_keys},
+    {"ludwik_equivalent", OBJECT, "Ludwik law that bends alike on a first loading",
+     &equivalent_keys},
     {"identifiable", WB_HERE(struct wb_cycle_calibration),
-     "which numbers of a Ludwik law the data determine", &identifiable},
+     "which numbers of a Ludwik law the data determine", &identifiable_keys},
     {"specimens_for_5_percent", CYCLE(specimens_for_5_percent),
      "number of specimens that EI within 5 % needs; 0: not known", .unit = ""},
-    {"specimens", OBJECT | LIST, "each specimen by itself", &specimen},
+    {"specimens", OBJECT | LIST, "each specimen by itself", &specimen_keys},
     {"budget", OBJECT | LIST, "uncertainty budget of each quantity", &wb_cycle_budget_keys},
 };
-WB_KEYS(wb_cycle_json_keys, "cycle_keys", "");
+WB_KEYS(wb_cycle_json, "cycle_keys", "");
 
 static void put_ludwik(struct wb_json *object, const struct wb_material *m, double misfit)
 {
-    WB_PUT(object, &equivalent, struct wb_material, m);
+    WB_PUT(object, &equivalent_keys, struct wb_material, m);
     wb_json_set_number(object, "moment_misfit", misfit);
 }
 
@@ -139,15 +139,15 @@ static void put_law(struct wb_json *object, const struct wb_law *law)
 static void put_rule(struct wb_json *object, const struct wb_cycle_calibration *c)
 {
     wb_json_set_text(object, "chosen", wb_candidate_name(c->chosen));
-    WB_PUT(object, &rule, struct wb_cycle_calibration, c);
+    WB_PUT(object, &rule_keys, struct wb_cycle_calibration, c);
     wb_json_set_number(object, "largest_supported_misfit", WB_CYCLE_LARGEST_FOLLOWED);
-    WB_PUT(object, &rule, struct wb_cycle_calibration, c);
+    WB_PUT(object, &rule_keys, struct wb_cycle_calibration, c);
     struct wb_json *const ranked = wb_json_set_array(object, "ranked");
     for (int i = 0; i < c->n_ranked; i++) {
         const struct wb_cycle_rank *const of = &c->ranked[i];
         struct wb_json *const item = wb_json_append_object(ranked);
         wb_json_set_text(item, "law", wb_candidate_name(of->candidate));
-        WB_PUT(item, &rank, struct wb_cycle_rank, of);
+        WB_PUT(item, &rank_keys, struct wb_cycle_rank, of);
         wb_json_set_number(item, "residual_curvature_ratio",
                            c->has_unloading ? of->residual_curvature_ratio.value : (double)NAN);
         /* The parameters of a law that does not fit depend on where its search ended. */
@@ -179,15 +179,15 @@ static void put_specimens(struct wb_json *array, const struct wb_cycle_calibrati
         const struct wb_cycle_fit *const fit = &answer->fit;
         const struct wb_cycle_bow bow = wb_cycle_fit_bow(fit, member->data.info.length);
         struct wb_json *const item = wb_json_append_object(array);
-        WB_PUT(item, &specimen, struct wb_cycle_member, member);
+        WB_PUT(item, &specimen_keys, struct wb_cycle_member, member);
         wb_json_set_number(item, "flexural_rigidity_N_mm2",
                            answer->value[WB_CYCLE_RIGIDITY] / WB_NMM2);
         wb_json_set_number(item, "residual_curvature_ratio",
                            c->has_unloading ? answer->value[WB_CYCLE_RESIDUAL_CURVATURE]
                                             : (double)NAN);
-        WB_PUT(item, &specimen, struct wb_cycle_bow, &bow);
-        WB_PUT(item, &specimen, struct wb_cycle_fit, fit);
-        WB_PUT(item, &specimen, struct wb_cycle_member, member);
+        WB_PUT(item, &specimen_keys, struct wb_cycle_bow, &bow);
+        WB_PUT(item, &specimen_keys, struct wb_cycle_fit, fit);
+        WB_PUT(item, &specimen_keys, struct wb_cycle_member, member);
         wb_json_set_integer(item, "outliers", fit->n_outliers + member->data.n_outliers);
         put_correlation(item, fit);
         put_ludwik(wb_json_set_object(item, "ludwik_equivalent"), &member->ludwik,

@@ -209,14 +209,15 @@ static const struct wb_key valley_rows[] = {
 };
 static WB_KEYS(valley, "ludwik_on_loading", "K and n of the first loading of the first sample.");
 
-static const struct wb_key wb_recordings_cycle_keys_rows[] = {
+static const struct wb_key wb_recordings_cycle_rows[] = {
     {.of = &wb_cycle_json_keys},
-    {"moment_curvature_measured", OBJECT | LIST, "M over curvature without a law", &cloud},
-    {"later_cycles", OBJECT | OPTIONAL, "later cycles", &later},
-    {"remarks", OBJECT | LIST, "remarks on the calibration", &remark},
-    {"ludwik_on_loading_alone", OBJECT | OPTIONAL, "K and n of a first loading alone", &valley},
+    {"moment_curvature_measured", OBJECT | LIST, "M over curvature without a law", &cloud_keys},
+    {"later_cycles", OBJECT | OPTIONAL, "later cycles", &later_keys},
+    {"remarks", OBJECT | LIST, "remarks on the calibration", &remark_keys},
+    {"ludwik_on_loading_alone", OBJECT | OPTIONAL, "K and n of a first loading alone",
+     &valley_keys},
 };
-WB_KEYS(wb_recordings_cycle_keys, "report_cycle_keys", "");
+WB_KEYS(wb_recordings_cycle, "report_cycle_keys", "");
 
 void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_cycle *cycle)
 {
@@ -228,11 +229,11 @@ void wb_recordings_cycle_put(struct wb_json *object, const struct wb_recordings_
         wb_moment_curvature_put(wb_json_set_array(item, "points"), &cycle->clouds[i]);
     }
     if (cycle->later.n > 0)
-        WB_PUT(wb_json_set_object(object, "later_cycles"), &later, struct wb_cycle_later,
+        WB_PUT(wb_json_set_object(object, "later_cycles"), &later_keys, struct wb_cycle_later,
                &cycle->later);
     wb_cycle_check_put(wb_json_set_array(object, "remarks"), &cycle->remarks);
     if (cycle->has_valley)
-        WB_PUT(wb_json_set_object(object, "ludwik_on_loading_alone"), &valley,
+        WB_PUT(wb_json_set_object(object, "ludwik_on_loading_alone"), &valley_keys,
                struct wb_cycle_valley, &cycle->valley);
 }
 

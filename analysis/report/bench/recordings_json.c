@@ -41,7 +41,7 @@ static const struct wb_key recording_rows[] = {
     {"used", TEST(usable), "the recording is used"},
     {"seed", INTEGER | OPTIONAL, "seed of the virtual rig"},
     {"sha256", TEXT | OPTIONAL, "SHA-256 of the uncompressed recording"},
-    {"excluded", OBJECT | OPTIONAL, "exclusion of the test", &wb_keys_excluded},
+    {"excluded", OBJECT | OPTIONAL, "exclusion of the test", &wb_common_excluded_keys},
     {"problem", TEXT | OPTIONAL, "why the recording is not used"},
     {"sample", TEST(dataset.info.sample) | OPTIONAL, "number of the piece"},
     {"length_mm", TEST(dataset.info.length) | OPTIONAL, "free length"},
@@ -50,15 +50,15 @@ static const struct wb_key recording_rows[] = {
     {"tool_revision", TEST(tool_revision) | OPTIONAL, "revision of the program that recorded"},
     {"operator", TEST(operator_name) | OPTIONAL, "operator"},
     {"bow_mm", NUMBER | OPTIONAL, "natural offset of the tip"},
-    {"corrections", OBJECT | LIST | OPTIONAL, "as in dataset.json", &wb_align_keys_correction},
-    {"checks", OBJECT | OPTIONAL, "as in dataset.json", &wb_align_keys_checks},
+    {"corrections", OBJECT | LIST | OPTIONAL, "as in dataset.json", &wb_align_correction_keys},
+    {"checks", OBJECT | OPTIONAL, "as in dataset.json", &wb_align_checks_keys},
     {"warnings", TEXT | LIST | OPTIONAL, "as in dataset.json"},
 };
 static WB_KEYS(recording, "report_recording",
                "A recording; the keys from `sample` on are of a used one.");
 
 static const struct wb_key published_rows[] = {
-    {.of = &wb_keys_ludwik},
+    {.of = &wb_law_ludwik_keys},
     {"source", WIRE(reference_source), "source of the values"},
 };
 static WB_KEYS(published, "published", "Published properties of a wire.");
@@ -100,18 +100,19 @@ static const struct wb_key comparison_rows[] = {
     {"shape_largest_mm", RESULT(shape_max) | UNKNOWN | OPTIONAL, "largest such distance"},
     {"shape_points", RESULT(n_shape_points) | OPTIONAL, "number of markers' places compared"},
     {"mean_bow_mm", NUMBER | OPTIONAL, "mean natural offset of the tip"},
-    {"measured", OBJECT | OPTIONAL, "mean curve of the samples", &measured},
+    {"measured", OBJECT | OPTIONAL, "mean curve of the samples", &measured_keys},
     {"elastoplastic", RESULT(elastoplastic) | OPTIONAL, "curve of the elastoplastic wire",
-     &computed},
-    {"linear_elastic", RESULT(elastic) | OPTIONAL, "curve of the linear elastic wire", &computed},
+     &computed_keys},
+    {"linear_elastic", RESULT(elastic) | OPTIONAL, "curve of the linear elastic wire",
+     &computed_keys},
 };
 static WB_KEYS(comparison, "comparison_keys", "");
 
-static const struct wb_key state_keys_rows[] = {
+static const struct wb_key state_rows[] = {
     {"state", TEXT, "whether there is a result", .choices = "not wanted|missing|failed|done"},
     {"problem", TEXT | OPTIONAL, "why it is missing or failed"},
 };
-static WB_KEYS(state_keys, "state_keys", "");
+static WB_KEYS(state, "state_keys", "");
 
 static const struct wb_key verdict_rows[] = {
     {"rms_uncertainty_95_over_F_max", NUMBER | UNKNOWN | OPTIONAL,
@@ -148,17 +149,18 @@ static WB_KEYS(search, "search", "The search for K and n.");
 
 static const struct wb_key calibration_rows[] = {
     {.of = &state_keys},
-    {"properties", OBJECT | OPTIONAL, "E, sigma_Y, K and n", &wb_keys_ludwik},
-    {"standard_uncertainties", OBJECT | OPTIONAL, "their standard uncertainties", &uncertainties},
+    {"properties", OBJECT | OPTIONAL, "E, sigma_Y, K and n", &wb_law_ludwik_keys},
+    {"standard_uncertainties", OBJECT | OPTIONAL, "their standard uncertainties",
+     &uncertainties_keys},
     {"bow_corrected", FITTED(bow_corrected) | OPTIONAL,
      "E and sigma_Y were corrected for the samples' bows"},
     {"remarks", TEXT | LIST | OPTIONAL, "remarks on the properties"},
     {"rms_over_F_max", FITTED(rms) | OPTIONAL, "RMS error of the fit over F_max"},
     {"largest_error_over_F_max", FITTED(max_error) | OPTIONAL,
      "largest error of the fit over F_max"},
-    {.of = &comparison},
-    {"search", OBJECT | OPTIONAL, "search for K and n", &search},
-    {.of = &verdict},
+    {.of = &comparison_keys},
+    {"search", OBJECT | OPTIONAL, "search for K and n", &search_keys},
+    {.of = &verdict_keys},
 };
 static WB_KEYS(calibration, "report_calibration",
                "The calibration of a wire; all keys are present where it is done.");
@@ -174,8 +176,9 @@ static const struct wb_key expected_rows[] = {
 static WB_KEYS(expected, "expected_keys", "");
 
 static const struct wb_key validation_rows[] = {
-    {.of = &state_keys}, {.of = &comparison}, {.of = &expected}, {.of = &wb_validate_json_keys},
-    {.of = &verdict},
+    {.of = &state_keys},    {.of = &comparison_keys},
+    {.of = &expected_keys}, {.of = &wb_validate_json_keys},
+    {.of = &verdict_keys},
 };
 static WB_KEYS(validation, "report_validation",
                "The validation of a wire; keys from `samples` on are present if done.");
@@ -193,7 +196,7 @@ static WB_KEYS(pooled, "pooled_interval",
 
 /* Of a cycle that is done, or not. */
 static const struct wb_key prediction_rows[] = {
-    {"prediction", OBJECT | OPTIONAL, "validation of this law", &validation},
+    {"prediction", OBJECT | OPTIONAL, "validation of this law", &validation_keys},
 };
 static WB_KEYS(prediction, "prediction_key", "");
 
@@ -201,47 +204,47 @@ static const struct wb_key cycle_done_rows[] = {
     {"state", TEXT, "the calibration is done", .choices = "done"},
     {.of = &wb_recordings_cycle_keys},
     {"flexural_rigidity_N_mm2_pooled_over_wires", OBJECT | OPTIONAL,
-     "EI with the scatter of all wires' samples", &pooled, .unit = "N mm2"},
-    {.of = &prediction},
+     "EI with the scatter of all wires' samples", &pooled_keys, .unit = "N mm2"},
+    {.of = &prediction_keys},
 };
 static WB_KEYS(cycle_done, "report_cycle", "The calibration on whole cycles.");
 
 static const struct wb_key cycle_failed_rows[] = {
     {"state", TEXT, "why there is no calibration", .choices = "missing|failed"},
     {"problem", TEXT, "why it is missing or failed"},
-    {.of = &prediction},
+    {.of = &prediction_keys},
 };
 static WB_KEYS(cycle_failed, "report_cycle_missing",
                "A calibration on whole cycles that is not there.");
 
-static const struct wb_keys *const cycles[] = {&cycle_done, &cycle_failed, NULL};
+static const struct wb_keys *const cycles[] = {&cycle_done_keys, &cycle_failed_keys, NULL};
 static const struct wb_keys cycle = {"cycle", "The calibration on whole cycles, or why not.",
                                      .alternatives = cycles};
 
-static const struct wb_key wire_keys_rows[] = {
+static const struct wb_key wire_rows[] = {
     {"wire", WIRE(product.name), "name of the product"},
     {"label", WIRE(label), "name in the report"},
     {"conductor_diameter_mm", WIRE(product.conductor_diameter),
      "diameter of the conductor; 0: no single one"},
     {"outer_diameter_mm", WIRE(product.outer_diameter), "outer diameter"},
     {"density_g_cm3", WIRE(product.density), "mean density over the outer diameter"},
-    {"published", OBJECT | OPTIONAL, "published properties", &published},
-    {"calibration", OBJECT, "calibration by the paper's route", &calibration},
-    {"validation", OBJECT, "validation of that calibration", &validation},
+    {"published", OBJECT | OPTIONAL, "published properties", &published_keys},
+    {"calibration", OBJECT, "calibration by the paper's route", &calibration_keys},
+    {"validation", OBJECT, "validation of that calibration", &validation_keys},
     {"cycle", OBJECT | OPTIONAL, "calibration on whole cycles", &cycle},
 };
-static WB_KEYS(wire_keys, "report_wire", "A wire of a campaign of recordings.");
+static WB_KEYS(wire, "report_wire", "A wire of a campaign of recordings.");
 
-static const struct wb_key wb_recordings_json_keys_rows[] = {
+static const struct wb_key wb_recordings_json_rows[] = {
     {.of = &wb_numbers_head_keys},
     {"virtual_rig", WB_AT(struct wb_recordings_results, any_virtual),
      "a recording that is used comes from a virtual rig"},
-    {"settings", OBJECT, "settings of the calibration", &settings},
-    {"limits", OBJECT, "limits of the campaign", &limits},
-    {"recordings", OBJECT | LIST, "recordings of the campaign", &recording},
+    {"settings", OBJECT, "settings of the calibration", &settings_keys},
+    {"limits", OBJECT, "limits of the campaign", &limits_keys},
+    {"recordings", OBJECT | LIST, "recordings of the campaign", &recording_keys},
     {"wires", OBJECT | LIST, "wires of the campaign", &wire_keys},
 };
-WB_KEYS(wb_recordings_json_keys, "report_of_recordings", "The report of a campaign of recordings.");
+WB_KEYS(wb_recordings_json, "report_of_recordings", "The report of a campaign of recordings.");
 
 /* --- values --- */
 
@@ -255,7 +258,7 @@ static void put_settings(struct wb_json *root, const struct wb_recordings *campa
 {
     const struct wb_calibrate_settings meant = wb_calibrate_settings_meant(&campaign->head.fit);
     struct wb_json *const of = wb_json_set_object(root, "settings");
-    WB_PUT(of, &settings, struct wb_calibrate_settings, &meant);
+    WB_PUT(of, &settings_keys, struct wb_calibrate_settings, &meant);
     struct wb_json *const largest = wb_json_set_object(root, "limits");
     if (campaign->limit[WB_RECORDINGS_CALIBRATION] > 0.0)
         wb_json_set_number(largest, "calibration_rms_max", campaign->limit[0]);
@@ -268,10 +271,10 @@ static void put_test(struct wb_json *list, const struct wb_recordings_results_wi
                      enum wb_recordings_purpose purpose)
 {
     struct wb_json *const entry = wb_json_append_object(list);
-    WB_PUT(entry, &recording, struct wb_recordings_test, test->wanted);
+    WB_PUT(entry, &recording_keys, struct wb_recordings_test, test->wanted);
     wb_json_set_text(entry, "wire", wire->wanted->product.name);
     wb_json_set_text(entry, "purpose", wb_recordings_purposes[purpose]);
-    WB_PUT(entry, &recording, struct wb_recordings_results_test, test);
+    WB_PUT(entry, &recording_keys, struct wb_recordings_results_test, test);
     if (test->wanted->seed >= 0)
         wb_json_set_integer(entry, "seed", test->wanted->seed);
     const char *const sha256 = test->sha256[0] ? test->sha256 : test->wanted->sha256;
@@ -285,7 +288,7 @@ static void put_test(struct wb_json *list, const struct wb_recordings_results_wi
         wb_json_set_text(entry, "problem", wb_text_string(&test->problem));
         return;
     }
-    WB_PUT(entry, &recording, struct wb_recordings_results_test, test);
+    WB_PUT(entry, &recording_keys, struct wb_recordings_results_test, test);
     wb_json_set_number(entry, "bow_mm", wb_dataset_bow(&test->dataset.info) / WB_MM);
     static const char *const parts[] = {"corrections", "checks", "warnings"};
     for (int k = 0; k < 3; k++) {
@@ -299,25 +302,25 @@ static void put_comparison(struct wb_json *object, const struct wb_validate_resu
                            double scatter, double residual)
 {
     const struct wb_curve *const curve = &result->curve;
-    WB_PUT(object, &comparison, struct wb_validate_result, result);
+    WB_PUT(object, &comparison_keys, struct wb_validate_result, result);
     wb_json_set_number(object, "scatter_rms_over_F_max",
                        curve->n_samples > 1 ? scatter : (double)NAN);
     wb_json_set_number(object, "residual_scatter_rms_over_F_max",
                        curve->n_samples > 1 ? residual : (double)NAN);
-    WB_PUT(object, &comparison, struct wb_validate_result, result);
+    WB_PUT(object, &comparison_keys, struct wb_validate_result, result);
     wb_json_set_number(object, "mean_bow_mm", wb_dataset_bow(&result->info) / WB_MM);
     struct wb_json *const mean = wb_json_set_object(object, "measured");
     struct wb_json *const deflection = wb_json_set_array(mean, "deflection_mm");
     for (int i = 0; i < curve->n; i++)
         wb_json_append_number(deflection, i * curve->step / WB_MM);
-    WB_PUT(mean, &measured, struct wb_curve, curve);
-    WB_PUT(object, &comparison, struct wb_validate_result, result);
+    WB_PUT(mean, &measured_keys, struct wb_curve, curve);
+    WB_PUT(object, &comparison_keys, struct wb_validate_result, result);
 }
 
 static void put_validation(struct wb_json *object, const struct wb_validate_result *result)
 {
     put_comparison(object, result, result->scatter_rms, result->residual_scatter_rms);
-    WB_PUT(object, &expected, struct wb_validate_result, result);
+    WB_PUT(object, &expected_keys, struct wb_validate_result, result);
     wb_validate_json_put_cycles(object, result);
 }
 
@@ -325,10 +328,10 @@ static void put_uncertainties(struct wb_json *object, const struct wb_calibrate_
 {
     const char *remarks[WB_CALIBRATE_MOST_REMARKS];
     struct wb_json *const entry = wb_json_set_object(object, "standard_uncertainties");
-    WB_PUT(entry, &uncertainties, struct wb_calibrate_result, result);
+    WB_PUT(entry, &uncertainties_keys, struct wb_calibrate_result, result);
     wb_json_set_number(entry, "strength_coefficient_factor", exp(result->deviation[2]));
-    WB_PUT(entry, &uncertainties, struct wb_calibrate_result, result);
-    WB_PUT(object, &calibration, struct wb_calibrate_result, result);
+    WB_PUT(entry, &uncertainties_keys, struct wb_calibrate_result, result);
+    WB_PUT(object, &calibration_keys, struct wb_calibrate_result, result);
     struct wb_json *const list = wb_json_set_array(object, "remarks");
     const int n = wb_calibrate_remarks(result, remarks);
     for (int i = 0; i < n; i++)
@@ -338,9 +341,9 @@ static void put_uncertainties(struct wb_json *object, const struct wb_calibrate_
 static void put_search(struct wb_json *object, const struct wb_calibrate_result *c)
 {
     struct wb_json *const of = wb_json_set_object(object, "search");
-    WB_PUT(of, &search, struct wb_calibrate_result, c);
+    WB_PUT(of, &search_keys, struct wb_calibrate_result, c);
     wb_json_set_text(of, "stopped_because", wb_calibrate_end_text(c->end));
-    WB_PUT(of, &search, struct wb_calibrate_result, c);
+    WB_PUT(of, &search_keys, struct wb_calibrate_result, c);
     struct wb_json *const k = wb_json_set_array(of, "strength_coefficient_MPa");
     struct wb_json *const n = wb_json_set_array(of, "hardening_exponent");
     struct wb_json *const error = wb_json_set_array(of, "error_over_F_max");
@@ -358,7 +361,7 @@ static void put_calibration(struct wb_json *object, const struct wb_recordings_r
     const struct wb_calibrate_result *const c = &wire->calibration;
     wb_numbers_put_properties(wb_json_set_object(object, "properties"), &c->material);
     put_uncertainties(object, c);
-    WB_PUT(object, &calibration, struct wb_calibrate_result, c);
+    WB_PUT(object, &calibration_keys, struct wb_calibrate_result, c);
     put_comparison(object, &wire->steps[WB_RECORDINGS_CALIBRATION].result, c->scatter_rms,
                    c->residual_scatter_rms);
     put_search(object, c);
@@ -383,7 +386,7 @@ static void put_pooled(struct wb_json *of, const struct wb_recordings_results *r
     wb_recordings_cycle_interval(&results->pool, of_wire, &low, &high);
     wb_json_set_number(interval, "low", low / WB_NMM2);
     wb_json_set_number(interval, "high", high / WB_NMM2);
-    WB_PUT(interval, &pooled, struct wb_recordings_cycle_pool, &results->pool);
+    WB_PUT(interval, &pooled_keys, struct wb_recordings_cycle_pool, &results->pool);
 }
 
 static void put_cycle(struct wb_json *entry, const struct wb_recordings_results *results,
@@ -425,7 +428,7 @@ static void put_wire(struct wb_json *list, const struct wb_recordings_results *r
     if (wanted->has_reference) {
         struct wb_json *const reference = wb_json_set_object(entry, "published");
         wb_numbers_put_properties(reference, &wanted->reference);
-        WB_PUT(reference, &published, struct wb_recordings_wire, wanted);
+        WB_PUT(reference, &published_keys, struct wb_recordings_wire, wanted);
     }
     for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
         const struct wb_recordings_results_step *const step = &wire->steps[k];

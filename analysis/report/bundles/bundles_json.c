@@ -18,29 +18,29 @@
 #define WANTED(member) WB_AT(struct wb_bundles_run, member)
 #define RUN(member) WB_AT(struct wb_bundles_result, member)
 
-static const struct wb_key verdict_keys_rows[] = {
+static const struct wb_key verdict_rows[] = {
     {"limit", VERDICT(key), "key of the limit"},  {"of", VERDICT(label), "bundle or run"},
     {"value", VERDICT(value) | UNKNOWN, "value"}, {"largest", VERDICT(limit), "limit of the value"},
     {"kept", VERDICT(kept), "the limit is kept"},
 };
-static WB_KEYS(verdict_keys, "verdict", "A limit and whether it is kept.");
+static WB_KEYS(verdict, "verdict", "A limit and whether it is kept.");
 
-static const struct wb_key beam_keys_rows[] = {
+static const struct wb_key beam_rows[] = {
     {"outer_diameter_mm", NUMBER, "outer diameter"},
-    {.of = &wb_keys_ludwik},
+    {.of = &wb_law_ludwik_keys},
     {"EI_N_mm2", NUMBER, "flexural rigidity"},
 };
-static WB_KEYS(beam_keys, "beam", "A homogenised beam.");
+static WB_KEYS(beam, "beam", "A homogenised beam.");
 
-static const struct wb_key dataset_keys_rows[] = {
+static const struct wb_key dataset_rows[] = {
     {.of = &wb_simulation_state_keys},
     {"sha256", RESULT(sha256) | OPTIONAL, "SHA-256 of force_deflection.csv"},
     {"tool_revision", RESULT(revision) | OPTIONAL, "revision of the program that computed it"},
     {"cpu_s", RESULT(cpu_s) | UNKNOWN | OPTIONAL, "CPU time"},
 };
-static WB_KEYS(dataset_keys, "bundle_dataset", "A dataset.");
+static WB_KEYS(dataset, "bundle_dataset", "A dataset.");
 
-static const struct wb_key bundle_keys_rows[] = {
+static const struct wb_key bundle_rows[] = {
     {"label", WB_AT(struct wb_bundles_bundle, label), "name in the report"},
     {"group", TEXT, "group of the bundle"},
     {"decaying_friction", TEXT, "name of the run with decaying friction"},
@@ -62,16 +62,16 @@ static const struct wb_key bundle_keys_rows[] = {
     {"cpu_of_rod_over_bundle", NUMBER | UNKNOWN | OPTIONAL,
      "CPU time of the beam over that of the bundle"},
 };
-static WB_KEYS(bundle_keys, "report_bundle", "A bundle.");
+static WB_KEYS(bundle, "report_bundle", "A bundle.");
 
-static const struct wb_key elastic_keys_rows[] = {
+static const struct wb_key elastic_rows[] = {
     {"length_mm", RIGIDITY(length), "length"},
     {"EI_N_mm2", RIGIDITY(rigidity) | UNKNOWN, "flexural rigidity at that length"},
     {"newmark_alpha_L", RIGIDITY(alpha) | UNKNOWN, "alpha L of Newmark's theory"},
 };
-static WB_KEYS(elastic_keys, "section_rigidity", "The elastic rigidity at one length.");
+static WB_KEYS(elastic, "section_rigidity", "The elastic rigidity at one length.");
 
-static const struct wb_key section_keys_rows[] = {
+static const struct wb_key section_rows[] = {
     {"problem", TEXT | OPTIONAL, "why the section model was not computed"},
     {"friction_used", SECTION(friction) | OPTIONAL, "friction coefficient"},
     {"friction_is_mean_of_decay", SECTION(is_mean) | OPTIONAL,
@@ -86,12 +86,12 @@ static const struct wb_key section_keys_rows[] = {
     {"force_N", WB_POINTER(struct wb_bundles_section, curve.force, curve.n) | UNKNOWN | OPTIONAL,
      "force at the run's deflections"},
 };
-static WB_KEYS(section_keys, "section_model", "The section model of the same bundle.");
+static WB_KEYS(section, "section_model", "The section model of the same bundle.");
 
 static const struct wb_setting_table friction_setting = {wb_bundle_model_friction_setting, 1};
 static const struct wb_setting_table cohesion_setting = {wb_bundle_model_cohesion_setting, 1};
 
-static const struct wb_key run_keys_rows[] = {
+static const struct wb_key run_rows[] = {
     {"name", WANTED(name), "name of the run"},
     {"bundle", WANTED(model_name), "name of the bundle's file"},
     {"inputs_sha256", WANTED(dataset.inputs_sha256), "SHA-256 of the inputs"},
@@ -133,15 +133,15 @@ static const struct wb_key run_keys_rows[] = {
     {"rms", RUN(rms) | UNKNOWN | OPTIONAL, "RMS of `error`"},
     {"largest_error", RUN(max_error) | UNKNOWN | OPTIONAL, "largest of `error`"},
 };
-static WB_KEYS(run_keys, "report_run", "A run; the keys from `elements` on are of a used dataset.");
+static WB_KEYS(run, "report_run", "A run; the keys from `elements` on are of a used dataset.");
 
-static const struct wb_key wb_bundles_json_keys_rows[] = {
+static const struct wb_key wb_bundles_json_rows[] = {
     {.of = &wb_numbers_head_keys},
     {"limits", OBJECT | LIST, "limits of the campaign", &verdict_keys},
     {"bundles", OBJECT | LIST, "bundles", &bundle_keys},
     {"runs", OBJECT | LIST, "runs", &run_keys},
 };
-WB_KEYS(wb_bundles_json_keys, "report_of_bundles", "The report of a campaign of bundles.");
+WB_KEYS(wb_bundles_json, "report_of_bundles", "The report of a campaign of bundles.");
 
 /* --- datasets --- */
 

@@ -250,29 +250,29 @@ static const struct wb_key layer_place_rows[] = {
     {"free_Nmm", PLACE(free) | UNKNOWN, "moment of wires that slide freely"},
     {"bonded_Nmm", PLACE(bonded) | UNKNOWN, "moment of bonded wires"},
     {"over_first_layer", NUMBER | UNKNOWN, "measured moment over that of the first layer"},
-    {"measured_over_free", PLACE(ratio), "measured moment over that of free wires", &interval},
-    {"chi", PLACE(chi), "place between free (0) and bonded (1) wires", &interval},
+    {"measured_over_free", PLACE(ratio), "measured moment over that of free wires", &interval_keys},
+    {"chi", PLACE(chi), "place between free (0) and bonded (1) wires", &interval_keys},
     {"chi_of_each_series", NUMBER | LIST | UNKNOWN, "chi with the wires of each series alone"},
     {"chi_of_half_and_twice_the_zero", NUMBER | LIST | UNKNOWN,
      "chi with half and twice the force that marks the first contact"},
 };
 static WB_KEYS(layer_place, "layer_place", "A layer at one curvature.");
 
-static const struct wb_key layer_keys_rows[] = {
+static const struct wb_key layer_rows[] = {
     {"group", TEXT, "group of the layer"},
     {"tests", WB_AT(struct wb_machines_layer, n), "number of tests"},
-    {"places", OBJECT | LIST, "curvatures", &layer_place},
+    {"places", OBJECT | LIST, "curvatures", &layer_place_keys},
 };
-static WB_KEYS(layer_keys, "cable_layer", "A layer of the cable.");
+static WB_KEYS(layer, "cable_layer", "A layer of the cable.");
 
-static const struct wb_key wb_machines_cable_keys_rows[] = {
+static const struct wb_key wb_machines_cable_rows[] = {
     {"wire_count", RING(n_wires), "wires round the core"},
     {"wire_circle_radius_mm", RING(radius), "radius of the circle of their centres"},
     {"conductor_area_mm2", RING(area), "area of the metal in one wire"},
-    {"conductor", OBJECT, "law of the conductor", &wb_keys_ludwik},
+    {"conductor", OBJECT, "law of the conductor", &wb_law_ludwik_keys},
     {"layers", OBJECT | LIST, "layers", &layer_keys},
 };
-WB_KEYS(wb_machines_cable_keys, "cable", "A layered cable.");
+WB_KEYS(wb_machines_cable, "cable", "A layered cable.");
 
 static void put_place(struct wb_json *list, const struct wb_machines_layer *layer, int n_series,
                       int k)
@@ -280,9 +280,9 @@ static void put_place(struct wb_json *list, const struct wb_machines_layer *laye
     struct wb_json *const entry = wb_json_append_object(list);
     wb_json_set_number(entry, "curvature_1_m", layer->curvature[k]);
     wb_json_set_boolean(entry, "seating", layer->is_seating[k]);
-    WB_PUT(entry, &layer_place, struct wb_cable_place, &layer->place[k]);
+    WB_PUT(entry, &layer_place_keys, struct wb_cable_place, &layer->place[k]);
     wb_json_set_number(entry, "over_first_layer", layer->over_first[k]);
-    WB_PUT(entry, &layer_place, struct wb_cable_place, &layer->place[k]);
+    WB_PUT(entry, &layer_place_keys, struct wb_cable_place, &layer->place[k]);
     struct wb_json *const series = wb_json_set_array(entry, "chi_of_each_series");
     for (int s = 0; s < n_series; s++)
         wb_json_append_number(series, layer->chi_of_series[s][k]);

@@ -247,11 +247,11 @@ static const struct wb_key estimate_rows[] = {
 };
 static WB_KEYS(estimate, "bench_estimate", "A value and its intervals.");
 
-static const struct wb_key moment_keys_rows[] = {
+static const struct wb_key moment_rows[] = {
     {"curvature_1_m", NUMBER | UNKNOWN, "curvature"},
-    {"moment_Nmm", WB_HERE(struct wb_estimate), "moment of a first loading", &estimate},
+    {"moment_Nmm", WB_HERE(struct wb_estimate), "moment of a first loading", &estimate_keys},
 };
-static WB_KEYS(moment_keys, "fit_moment", "The moment at one curvature.");
+static WB_KEYS(moment, "fit_moment", "The moment at one curvature.");
 
 static const struct wb_key fit_test_rows[] = {
     {"series", MEMBER(data.info.piece.series), "series that the test belongs to"},
@@ -265,12 +265,11 @@ static const struct wb_key fit_test_rows[] = {
     {"first_contact_mm", MEMBER(fit.first_contact) | UNKNOWN | OPTIONAL,
      "travel at the first contact"},
     {"usable_mm", MEMBER(data.usable) | UNKNOWN | OPTIONAL, "travel up to which the test is used"},
-    {"limit", WB_CHOICE(struct wb_three_point_member, data.limit) | OPTIONAL,
-     "reason of that limit", .choices = "end of the loading|given|kink|third of the span"},
+    {"limit", TEXT | OPTIONAL, "reason of that limit"},
 };
 static WB_KEYS(fit_test, "fit_test", "The fit of a test.");
 
-static const struct wb_key left_out_keys_rows[] = {
+static const struct wb_key left_out_rows[] = {
     {"scatter_N", LEFT_OUT(scatter) | UNKNOWN,
      "standard deviation of the tests, RMS over deflections"},
     {"scatter_alone_N", LEFT_OUT(expected) | UNKNOWN,
@@ -283,9 +282,9 @@ static const struct wb_key left_out_keys_rows[] = {
     {"bias_at_N", WB_FULL(struct wb_left_out, offset) | UNKNOWN,
      "model less the mean of the other tests"},
 };
-static WB_KEYS(left_out_keys, "left_out", "A validation by leaving each test out.");
+static WB_KEYS(left_out, "left_out", "A validation by leaving each test out.");
 
-static const struct wb_key wb_machines_fits_keys_rows[] = {
+static const struct wb_key wb_machines_fits_rows[] = {
     {"wire", TEXT, "name of the wire"},
     {"test_count", WB_AT(struct wb_machines_fit, n), "number of tests"},
     {"tests_fitted", CALIBRATION(n_fitted) | OPTIONAL, "tests that a law was fitted to"},
@@ -295,14 +294,13 @@ static const struct wb_key wb_machines_fits_keys_rows[] = {
      "standard deviation of ln EI between series"},
     {"EI_identifiable", CALIBRATION(is_rigidity_identifiable) | OPTIONAL,
      "the data determine EI at zero curvature"},
-    {"EI_Nmm2", CALIBRATION(rigidity) | OPTIONAL, "EI at zero curvature", &estimate},
+    {"EI_Nmm2", CALIBRATION(rigidity) | OPTIONAL, "EI at zero curvature", &estimate_keys},
     {"moments", OBJECT | LIST | OPTIONAL, "moments of a first loading", &moment_keys},
-    {"tests", OBJECT | LIST | OPTIONAL, "fits of the tests", &fit_test},
+    {"tests", OBJECT | LIST | OPTIONAL, "fits of the tests", &fit_test_keys},
     {"problem", TEXT | OPTIONAL, "why there is no fit or no validation"},
     {"left_out", OBJECT | OPTIONAL, "validation by leaving each test out", &left_out_keys},
 };
-WB_KEYS(wb_machines_fits_keys, "fitted_wire",
-        "The calibration of a wire on three-point bending tests.");
+WB_KEYS(wb_machines_fits, "fitted_wire", "The calibration of a wire on three-point bending tests.");
 
 static void put_calibration(struct wb_json *entry, const struct wb_three_point_calibration *c)
 {
@@ -317,12 +315,13 @@ static void put_calibration(struct wb_json *entry, const struct wb_three_point_c
     for (int i = 0; i < c->n_members; i++) {
         const struct wb_three_point_member *const m = &c->members[i];
         struct wb_json *const test = wb_json_append_object(tests);
-        WB_PUT(test, &fit_test, struct wb_three_point_member, m);
+        WB_PUT(test, &fit_test_keys, struct wb_three_point_member, m);
         if (!m->is_fitted) {
             wb_json_set_text(test, "problem", m->why.text);
             continue;
         }
-        WB_PUT(test, &fit_test, struct wb_three_point_member, m);
+        WB_PUT(test, &fit_test_keys, struct wb_three_point_member, m);
+        wb_json_set_text(test, "limit", wb_three_point_limit_name(m->data.limit));
     }
 }
 

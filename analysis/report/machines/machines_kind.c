@@ -260,23 +260,23 @@ static const struct wb_key machine_test_rows[] = {
 };
 static WB_KEYS(machine_test, "machine_test", "A test of a group.");
 
-static const struct wb_key group_keys_rows[] = {
+static const struct wb_key group_rows[] = {
     {"name", GROUP(name), "name of the group"},
     {"label", GROUP(label), "name in the report"},
     {"outer_diameter_mm", GROUP(piece.outer_diameter), "outer diameter"},
     {"zero_force_mN", GROUP(zero_force), "force that marks the first contact"},
-    {"machine", OBJECT, "testing machine", &wb_keys_machine},
+    {"machine", OBJECT, "testing machine", &wb_common_machine_keys},
     {"early_rigidity_Nmm2", MEAN(rigidity) | UNKNOWN, "mean of the tests' early rigidity"},
     {"early_rigidity_deviation_Nmm2", MEAN(rigidity_deviation) | UNKNOWN, "its standard deviation"},
     {"reach_mm", NUMBER | UNKNOWN | OPTIONAL, "deflection that all tests reach"},
     {"force_N", NUMBER | LIST | UNKNOWN | OPTIONAL,
      "mean force at even deflections from 0 to `reach_mm`"},
     {"force_deviation_N", NUMBER | LIST | UNKNOWN | OPTIONAL, "its standard deviation"},
-    {"tests", OBJECT | LIST, "tests", &machine_test},
+    {"tests", OBJECT | LIST, "tests", &machine_test_keys},
 };
-static WB_KEYS(group_keys, "machine_group", "A group of tests.");
+static WB_KEYS(group, "machine_group", "A group of tests.");
 
-static const struct wb_key wb_machines_kind_keys_rows[] = {
+static const struct wb_key wb_machines_kind_rows[] = {
     {.of = &wb_numbers_head_keys},
     {"tests_wanted", WB_AT(struct wb_kind_outcome, n_wanted), "tests of the campaign"},
     {"tests_used", WB_AT(struct wb_kind_outcome, n_usable), "tests that are used"},
@@ -285,8 +285,7 @@ static const struct wb_key wb_machines_kind_keys_rows[] = {
     {"cable", OBJECT | OPTIONAL, "layered cable", &wb_machines_cable_keys},
     {"wires", OBJECT | LIST | OPTIONAL, "calibrated wires", &wb_machines_fits_keys},
 };
-WB_KEYS(wb_machines_kind_keys, "report_of_machine",
-        "The report of a campaign of testing machines.");
+WB_KEYS(wb_machines_kind, "report_of_machine", "The report of a campaign of testing machines.");
 
 static void put_test(struct wb_json *list, const char *file, const struct wb_machines_test *test)
 {
@@ -302,7 +301,7 @@ static void put_test(struct wb_json *list, const char *file, const struct wb_mac
         wb_json_set_text(entry, "problem", wb_text_string(&test->problem));
         return;
     }
-    WB_PUT(entry, &machine_test, struct wb_machines_test, test);
+    WB_PUT(entry, &machine_test_keys, struct wb_machines_test, test);
 }
 
 static struct wb_json *build_json(const void *context)

@@ -490,7 +490,7 @@ static void build_pages(struct wb_document *document, const void *context,
 #define VERDICT(member) WB_AT(struct wb_predictions_verdict, member)
 #define BUNDLE(member) WB_AT(struct wb_predictions_bundle, member)
 
-static const struct wb_key place_keys_rows[] = {
+static const struct wb_key place_rows[] = {
     {"of", TEXT, "the number", .choices = "force_N|deflection_springback"},
     {"deflection_mm", PLACE(at) | IF_KNOWN, "of a force: deflection"},
     {"test", PLACE(measured) | UNKNOWN, "value of the test, in N or as a ratio"},
@@ -499,9 +499,9 @@ static const struct wb_key place_keys_rows[] = {
     {"high", PLACE(band.wide_high) | UNKNOWN, "upper end of the band"},
     {"it_lies", TEXT, "place of the test's value", .choices = "below|within|above|not reached"},
 };
-static WB_KEYS(place_keys, "predicted_number", "A number of a test and its band.");
+static WB_KEYS(place, "predicted_number", "A number of a test and its band.");
 
-static const struct wb_key test_keys_rows[] = {
+static const struct wb_key test_rows[] = {
     {"label", WB_AT(struct wb_predictions_test, label), "name in the report"},
     {"dataset", WB_AT(struct wb_predictions_test, given), "folder of the dataset, as given"},
     {"problem", TEXT | OPTIONAL, "why the test is not compared"},
@@ -512,9 +512,9 @@ static const struct wb_key test_keys_rows[] = {
     {"verdict", VERDICT(words) | OPTIONAL, "verdict on all numbers"},
     {"places", OBJECT | LIST | OPTIONAL, "the numbers", &place_keys},
 };
-static WB_KEYS(test_keys, "predicted_test", "A test beside the bands.");
+static WB_KEYS(test, "predicted_test", "A test beside the bands.");
 
-static const struct wb_key bundle_keys_rows[] = {
+static const struct wb_key bundle_rows[] = {
     {"label", BUNDLE(label), "name in the report"},
     {"bundle", BUNDLE(model_name), "name of the bundle's file"},
     {"inputs_sha256", TEXT, "SHA-256 of the inputs of the section model"},
@@ -522,14 +522,13 @@ static const struct wb_key bundle_keys_rows[] = {
     {"problem", TEXT | OPTIONAL, "why there are no bands"},
     {"tests", OBJECT | LIST, "tests", &test_keys},
 };
-static WB_KEYS(bundle_keys, "predicted_bundle", "A bundle.");
+static WB_KEYS(bundle, "predicted_bundle", "A bundle.");
 
-static const struct wb_key wb_predictions_kind_keys_rows[] = {
+static const struct wb_key wb_predictions_kind_rows[] = {
     {.of = &wb_numbers_head_keys},
     {"bundles", OBJECT | LIST, "bundles", &bundle_keys},
 };
-WB_KEYS(wb_predictions_kind_keys, "report_of_prediction",
-        "The report of a campaign of predictions.");
+WB_KEYS(wb_predictions_kind, "report_of_prediction", "The report of a campaign of predictions.");
 
 static void put_test_numbers(struct wb_json *list, const struct wb_predictions_test *test,
                              const struct wb_predictions_verdict *verdict)

@@ -23,17 +23,17 @@ static const struct wb_key peak_rows[] = {
 };
 static WB_KEYS(peak, "stress_peak", "The largest stress of a part.");
 
-static const struct wb_key section_keys_rows[] = {
+static const struct wb_key section_rows[] = {
     {"state", WB_AT(struct wb_field, state), "name of the model's step"},
     {"section", TEXT, "kind of section", .choices = "longitudinal|cross"},
     {"from_clamp_mm", WB_AT(struct wb_field, x) | UNKNOWN,
      "place of a cross section; null: longitudinal"},
-    {"core", OBJECT | OPTIONAL, "largest stress of the core", &peak},
-    {"jacket", OBJECT | OPTIONAL, "largest stress of the jacket", &peak},
+    {"core", OBJECT | OPTIONAL, "largest stress of the core", &peak_keys},
+    {"jacket", OBJECT | OPTIONAL, "largest stress of the jacket", &peak_keys},
 };
-static WB_KEYS(section_keys, "section", "A section with stress fields.");
+static WB_KEYS(section, "section", "A section with stress fields.");
 
-static const struct wb_key run_keys_rows[] = {
+static const struct wb_key run_rows[] = {
     {.of = &wb_simulation_state_keys},
     {"elements", RUN(elements) | UNKNOWN, "number of elements"},
     {"degrees_of_freedom", RUN(unknowns) | UNKNOWN, "number of unknowns"},
@@ -54,10 +54,10 @@ static const struct wb_key run_keys_rows[] = {
     {"tip_moved_at_most_mm", NUMBER | UNKNOWN | OPTIONAL,
      "with residual stress: largest distance of the tip from that of the model without"},
 };
-static WB_KEYS(run_keys, "comparison_run",
+static WB_KEYS(run, "comparison_run",
                "A dataset of a case; the keys from `sha256` on are of a used one.");
 
-static const struct wb_key case_keys_rows[] = {
+static const struct wb_key case_rows[] = {
     {"label", CASE(label), "name of the case in the report"},
     {"model", CASE(model_name), "name of the model"},
     {"inputs_sha256", CASE(datasets[WB_WIRES_SOLID].inputs_sha256),
@@ -67,18 +67,18 @@ static const struct wb_key case_keys_rows[] = {
     {"cpu_of_rod_over_solid", NUMBER | UNKNOWN | OPTIONAL,
      "CPU time of the rod over that of the solid"},
 };
-static WB_KEYS(case_keys, "comparison_case", "A case of the comparison.");
+static WB_KEYS(case, "comparison_case", "A case of the comparison.");
 
-static const struct wb_key stress_keys_rows[] = {
+static const struct wb_key stress_rows[] = {
     {"from_clamp_mm", STRESS(x), "place of the cross section"},
-    {"core", OBJECT | OPTIONAL, "largest stress of the core", &peak},
-    {"jacket", OBJECT | OPTIONAL, "largest stress of the jacket", &peak},
+    {"core", OBJECT | OPTIONAL, "largest stress of the core", &peak_keys},
+    {"jacket", OBJECT | OPTIONAL, "largest stress of the jacket", &peak_keys},
     {"curvature_per_mm", NUMBER | UNKNOWN, "curvature of the exact rod there"},
     {"E_kappa_r_MPa", STRESS(beam) | UNKNOWN, "stress E kappa r of beam theory"},
 };
-static WB_KEYS(stress_keys, "elastic_stress", "Stresses of a cross section of the elastic solid.");
+static WB_KEYS(stress, "elastic_stress", "Stresses of a cross section of the elastic solid.");
 
-static const struct wb_key rod_keys_rows[] = {
+static const struct wb_key rod_rows[] = {
     {"reached", ROD(reached), "the rod reached the force"},
     {"tip_x_mm", ROD(x[WB_WIRES_POINTS - 1]) | UNKNOWN, "x of the tip"},
     {"tip_y_mm", ROD(y[WB_WIRES_POINTS - 1]) | UNKNOWN, "y of the tip"},
@@ -91,12 +91,12 @@ static const struct wb_key rod_keys_rows[] = {
     {"deflection_mm", NUMBER | LIST | UNKNOWN | OPTIONAL, "deflections of the curve"},
     {"angle_degrees", NUMBER | LIST | UNKNOWN | OPTIONAL, "slope angles of the curve"},
 };
-static WB_KEYS(rod_keys, "rod", "A rod under the same force.");
+static WB_KEYS(rod, "rod", "A rod under the same force.");
 
-static const struct wb_key fit_keys_rows[] = {
-    {"printed", OBJECT | OPTIONAL, "published properties", &wb_keys_ludwik},
+static const struct wb_key fit_rows[] = {
+    {"printed", OBJECT | OPTIONAL, "published properties", &wb_law_ludwik_keys},
     {"problem", TEXT | OPTIONAL, "why there is no fit"},
-    {"properties", OBJECT | OPTIONAL, "fitted properties", &wb_keys_ludwik},
+    {"properties", OBJECT | OPTIONAL, "fitted properties", &wb_law_ludwik_keys},
     {"rms_over_largest_deflection", NUMBER | UNKNOWN | OPTIONAL,
      "RMS error over the largest deflection"},
     {"F_max_N", NUMBER | OPTIONAL, "largest force"},
@@ -105,9 +105,9 @@ static const struct wb_key fit_keys_rows[] = {
     {"beam_runs", INTEGER | OPTIONAL, "computations of the beam"},
     {"rod", OBJECT | OPTIONAL, "rod with the fitted properties", &rod_keys},
 };
-static WB_KEYS(fit_keys, "comparison_fit", "The homogenised law fitted to the solid.");
+static WB_KEYS(fit, "comparison_fit", "The homogenised law fitted to the solid.");
 
-static const struct wb_key wb_wires_json_keys_rows[] = {
+static const struct wb_key wb_wires_json_rows[] = {
     {.of = &wb_numbers_head_keys},
     {"jacket_modulus_per_percent_of_core_MPa", NUMBER,
      "change of the jacket's E by eq. 8 when the core's E changes by 1 %"},
@@ -119,14 +119,14 @@ static const struct wb_key wb_wires_json_keys_rows[] = {
     {"printed_collapse_force_N", NUMBER | UNKNOWN | OPTIONAL,
      "force at which that rod would collapse without hardening"},
 };
-WB_KEYS(wb_wires_json_keys, "report_of_comparison", "The report of a comparison campaign.");
+WB_KEYS(wb_wires_json, "report_of_comparison", "The report of a comparison campaign.");
 
 /* --- values --- */
 
 static void put_peak(struct wb_json *object, const char *key, const struct wb_wires_peak *largest)
 {
     if (isfinite(largest->stress))
-        WB_PUT(wb_json_set_object(object, key), &peak, struct wb_wires_peak, largest);
+        WB_PUT(wb_json_set_object(object, key), &peak_keys, struct wb_wires_peak, largest);
 }
 
 /* The largest stresses on every section that the dataset keeps. */

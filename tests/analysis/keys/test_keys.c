@@ -40,7 +40,7 @@ static const struct wb_key plate_rows[] = {
     {"name", PLATE(name), "name of the plate"},
     {"notes", PLATE(notes) | IF_KNOWN, "notes"},
     {"sum", INTEGER, "set by code"},
-    {"size_mm", PLATE(size), "size", &size},
+    {"size_mm", PLATE(size), "size", &size_keys},
     {"colour", WB_CHOICE(struct plate, is_painted), "colour", .choices = "none|blue"},
     {"layer_mm", WB_AT(struct paint, layer), "thickness of the paint"},
     {"force_mN", PLATE(force) | IF_KNOWN, "force"},
@@ -78,11 +78,11 @@ static void members_are_written_in_the_order_of_the_rows(void **state)
     (void)state;
     const struct paint paint = {0.0001};
     struct wb_json *const object = wb_json_create();
-    WB_PUT(object, &plate, struct plate, &made);
+    WB_PUT(object, &plate_keys, struct plate, &made);
     wb_json_set_integer(object, "sum", 1);
-    WB_PUT(object, &plate, struct plate, &made);
-    WB_PUT(object, &plate, struct paint, &paint);
-    WB_PUT(object, &plate, struct plate, &made);
+    WB_PUT(object, &plate_keys, struct plate, &made);
+    WB_PUT(object, &plate_keys, struct paint, &paint);
+    WB_PUT(object, &plate_keys, struct plate, &made);
     char *const text = text_of(object);
     assert_string_equal(text, "{\"name\":\"p\",\"sum\":1,\"size_mm\":{\"length\":500.0,"
                               "\"width_mm\":333.333,\"holes\":4},\"colour\":\"blue\","
@@ -98,10 +98,10 @@ static void known_values_are_written(void **state)
     other.notes = "flat";
     other.force = 0.002;
     struct wb_json *const object = wb_json_create();
-    WB_PUT(object, &plate, struct plate, &other);
+    WB_PUT(object, &plate_keys, struct plate, &other);
     wb_json_set_integer(object, "sum", 1);
     wb_json_set_number(object, "layer_mm", 0.0);
-    WB_PUT(object, &plate, struct plate, &other);
+    WB_PUT(object, &plate_keys, struct plate, &other);
     const char *notes;
     double force;
     assert_true(wb_json_get_text(object, "notes", &notes));

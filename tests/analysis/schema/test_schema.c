@@ -149,7 +149,7 @@ static void the_unit_stands_at_the_end_of_the_key(void **state)
 static void documents_are_found_by_name(void **state)
 {
     (void)state;
-    assert_ptr_equal(wb_schema_find("properties")->root, &wb_schema_properties);
+    assert_ptr_equal(wb_schema_find("properties")->root, &wb_schema_properties_keys);
     assert_null(wb_schema_find("Properties"));
     for (size_t i = 0; i < WB_SCHEMA_DOCUMENTS; i++) {
         char *text;
@@ -177,7 +177,7 @@ static void documents_are_found_by_name(void **state)
 /* The definition of a key's object, by its path from the root: "law.parts". */
 static const struct wb_keys *object_at(const char *path)
 {
-    const struct wb_keys *object = &wb_schema_properties;
+    const struct wb_keys *object = &wb_schema_properties_keys;
     while (*path) {
         const size_t n = strcspn(path, ".");
         const struct wb_keys *next = NULL;
