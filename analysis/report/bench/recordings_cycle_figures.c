@@ -536,8 +536,8 @@ static enum wb_status add_region(struct wb_panel *panel, const struct wb_cycle_v
             continue;
         for (int k = 0; k <= loop->n; k++) {
             const double *const at = contour.points[loop->first + k % loop->n];
-            wb_figures_add_point(
-                &points, at[0], is_stress ? at[1] : at[1] / pow(WB_BENDING_PLASTIC_STRAIN, at[0]));
+            wb_figures_add_point(&points, at[0],
+                                 is_stress ? at[1] : at[1] / pow(WB_BENDING_PLASTIC_STRAIN, at[0]));
         }
         wb_figures_put_points(panel, label, &points, &line);
         label = NULL;
