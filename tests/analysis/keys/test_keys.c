@@ -84,10 +84,10 @@ static void members_are_written_in_the_order_of_the_rows(void **state)
     WB_PUT(object, &plate_keys, struct paint, &paint);
     WB_PUT(object, &plate_keys, struct plate, &made);
     char *const text = text_of(object);
-    assert_string_equal(text, "{\"name\":\"p\",\"sum\":1,\"size_mm\":{\"length\":500.0,"
+    assert_string_equal(text, "{\"name\":\"p\",\"sum\":1,\"size_mm\":{\"length\":500,"
                               "\"width_mm\":333.333,\"holes\":4},\"colour\":\"blue\","
-                              "\"layer_mm\":0.1,\"moment_N_mm\":[1.0,null],\"weighings\":7,"
-                              "\"depth_mm\":[1.0,2.0]}");
+                              "\"layer_mm\":0.1,\"moment_N_mm\":[1,null],\"weighings\":7,"
+                              "\"depth_mm\":[1,2]}");
     free(text);
 }
 
