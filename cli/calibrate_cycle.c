@@ -391,7 +391,7 @@ enum wb_status wb_calibrate_cycle_draw(const struct wb_calibrate_cycle *cycle, c
     wb_text_append(&footer, " (%s), law: %s", wb_finding_source(info),
                    wb_candidate_name(c->chosen));
     if (c->n_members > panels)
-        wb_text_append(&footer, "; the first %d of %d samples", panels, c->n_members);
+        wb_text_append(&footer, "; the first %d of %d specimens", panels, c->n_members);
     wb_figure_set_footer(figure, wb_text_string(&footer));
     const enum wb_status status = wb_figure_write_svg(figure, path);
     wb_text_release(&footer);

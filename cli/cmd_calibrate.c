@@ -129,9 +129,8 @@ static const struct argp argp = {
            "residual curvature ratio and hardening rule, from the first loading and unloading of "
            "each specimen. With --method paper: E by eq. 10, the yield stress by eq. 11, K and n "
            "by Nelder-Mead on the averaged first loading, with the beam under the load of the "
-           "test.\v"
-           "Misfits and errors are relative to F_max, the largest force, or, for tests with a "
-           "follower force, to the largest deflection. Exit code 3: no law fits loading and "
+           "test.\vMisfits and errors are relative to F_max, the largest force, or, for tests with "
+           "a follower force, to the largest deflection. Exit code 3: no law fits loading and "
            "unloading, a quantity is less certain than --at-most requires, a search did not "
            "converge, or Ctrl-C stopped it; the properties are written.",
 };
@@ -243,7 +242,7 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
     if (s->straight)
         printf("natural shape ignored\n");
     else
-        printf("mean bow %.2f mm, between samples %.2f mm%s\n", wb_dataset_bow(&r->info) / WB_MM,
+        printf("mean bow %.2f mm, between specimens %.2f mm%s\n", wb_dataset_bow(&r->info) / WB_MM,
                r->bow_spread / WB_MM,
                r->bow_corrected ? "; E and sigma_Y corrected for the bows" : "");
     print_value("E", r->material.youngs_modulus / WB_MPA, r->deviation[0] / WB_MPA, "MPa");
@@ -274,7 +273,7 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
     if (r->n_samples == 1)
         printf("one sample: no uncertainty\n");
     else
-        printf("scatter between samples %.3g, of which %.3g is not due to their natural shapes\n",
+        printf("scatter between specimens %.3g, of which %.3g is not due to their natural shapes\n",
                r->scatter_rms, r->residual_scatter_rms);
 }
 

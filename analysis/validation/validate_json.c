@@ -26,11 +26,11 @@ static const struct wb_key bounds_rows[] = {
 static WB_KEYS(bounds, "bounds", "Bounds of a validation.");
 
 static const struct wb_key unloading_rows[] = {
-    {"samples", RESULT(cycles.n_samples), "number of samples with unloading"},
+    {"samples", RESULT(cycles.n_samples), "number of specimens with unloading"},
     {"rms", RESULT(cycles.rms) | UNKNOWN, "RMS error of the mean over F_max"},
     {"max_error", RESULT(cycles.largest_error) | UNKNOWN, "largest error of the mean over F_max"},
     {"rms_of_samples", RESULT(cycles.sample_rms) | UNKNOWN,
-     "RMS error of the single samples over F_max"},
+     "RMS error of the single specimens over F_max"},
     {"rule_untested", RESULT(is_rule_untested),
      "the calibration had no unloading to test the hardening rule"},
 };
@@ -47,7 +47,7 @@ static WB_KEYS(residual, "residual_deflection",
 
 static const struct wb_key loop_rows[] = {
     {"cycle", LOOP(cycle), "cycle, from 1"},
-    {"samples", LOOP(n_samples), "number of samples"},
+    {"samples", LOOP(n_samples), "number of specimens"},
     {"measured", LOOP(measured) | UNKNOWN, "measured energy loss of the cycle", .unit = "mJ"},
     {"predicted", LOOP(computed) | UNKNOWN, "predicted energy loss of the cycle", .unit = "mJ"},
 };

@@ -436,7 +436,7 @@ static enum wb_status check_same(const struct wb_dataset *const *datasets, int n
                               wb_test_piece_constituent_name(info->piece.constituent), info->wire);
         if (info->machine.own_elongation != first->machine.own_elongation)
             return wb_fail_to(why, WB_ERR_DATA,
-                              "sample %d: elongation by %s, but of the first sample by %s: "
+                              "sample %d: elongation by %s, but of the first specimen by %s: "
                               "calibrate them separately",
                               info->sample,
                               info->machine.own_elongation ? "extensometer" : "crosshead",

@@ -790,7 +790,7 @@ static void check_others(struct wb_cycle_remarks *remarks,
     if (n == 1) {
         if (!isfinite(calibration->rigidity.deviation))
             say(remarks, WB_CHECK_NOTE, 0,
-                "wire '%s': one sample cannot show how specimens differ: the intervals are those "
+                "wire '%s': one specimen cannot show how specimens differ: the intervals are those "
                 "of this specimen, not of the product; test at least three",
                 wire);
         return;
@@ -799,7 +799,7 @@ static void check_others(struct wb_cycle_remarks *remarks,
         const double apart = ln_rigidity(calibration, 0) - ln_rigidity(calibration, 1);
         if (fabs(apart) > rigidity_limit * M_SQRT2 * least_deviation)
             say(remarks, WB_CHECK_DOUBT, 0,
-                "wire '%s': EI of samples %d and %d differ by %.0f %%, expected at most %.0f %%: "
+                "wire '%s': EI of specimens %d and %d differ by %.0f %%, expected at most %.0f %%: "
                 "is one of another wire, or its length wrong? Test a third",
                 wire, calibration->members[0].sample, calibration->members[1].sample,
                 100.0 * expm1(fabs(apart)),
@@ -851,7 +851,7 @@ static void check_batches(struct wb_cycle_remarks *remarks,
     }
     if (found.are_two)
         say(remarks, WB_CHECK_DOUBT, 0,
-            "wire '%s': samples %s and samples %s are two groups, whose moments at the largest "
+            "wire '%s': specimens %s and specimens %s are two groups, whose moments at the largest "
             "curvature are %.0f %% apart; of products of one kind, 1 in %.0f looks like this. Are "
             "they of two batches? Calibrate each by itself",
             calibration->members[0].data.info.wire, wb_text_string(&groups[0]),

@@ -69,7 +69,7 @@ static const struct wb_setting rows[] = {
      WB_ROW_OPTION("step-mm", "H", "Deflection step of the comparison"),
      .applies = WB_CALIBRATE_EVERYWHERE},
     {WB_ROW_BOOLEAN(wb_calibrate_settings, straight, "straight", false),
-     WB_ROW_OPTION("straight", NULL, "Ignore the natural shape (bow) of the samples"),
+     WB_ROW_OPTION("straight", NULL, "Ignore the natural shape (bow) of the specimens"),
      .applies = WB_CALIBRATE_EVERYWHERE},
     {WB_ROW_BOOLEAN(wb_calibrate_settings, restart, "restart", true),
      WB_ROW_OPTION("no-restart", NULL, "Do not restart the simplex from the optimum"),
@@ -91,7 +91,7 @@ static const struct wb_setting rows[] = {
     {WB_ROW_BOOLEAN(wb_calibrate_settings, bow_corrected, "bow_corrected", false),
      WB_ROW_OPTION(
          "bow-corrected", NULL,
-         "Correct E and the yield stress for the effect of the samples' bows on eqs. 10 and 11"),
+         "Correct E and the yield stress for the effect of the specimens' bows on eqs. 10 and 11"),
      .applies = WB_CALIBRATE_COMMAND | WB_CALIBRATE_CAMPAIGN},
     {WB_ROW_QUANTITY(wb_calibrate_settings, youngs_modulus, "youngs_modulus_MPa", "MPa", WB_MPA,
                      1e-3, 1e7, 0.0),

@@ -66,8 +66,9 @@ enum wb_status wb_jackknife_run(double deviation[4], const struct wb_dataset *co
         return wb_fail_to(why, status, "wire '%s': the uncertainties could not be computed: %s",
                           datasets[0]->info.wire, wb_status_text(status));
     if (status == WB_ERR_DATA)
-        wb_warn("wire '%s': no uncertainties, because the samples are unusable when one of them is "
-                "left out",
-                datasets[0]->info.wire);
+        wb_warn(
+            "wire '%s': no uncertainties, because the specimens are unusable when one of them is "
+            "left out",
+            datasets[0]->info.wire);
     return WB_OK;
 }

@@ -142,7 +142,7 @@ static void format(struct wb_text *text, const struct wb_calibrate_result *resul
     put_material(text, "", material);
     put_number(text, "", "poissons_ratio", material->poissons_ratio);
     if (isfinite(result->deviation[0])) {
-        wb_text_append(text, "# standard uncertainties from the scatter between samples\n"
+        wb_text_append(text, "# standard uncertainties from the scatter between specimens\n"
                              "deviations:\n");
         put_number(text, "  ", "youngs_modulus_MPa", result->deviation[0] / WB_MPA);
         put_number(text, "  ", "yield_stress_MPa", result->deviation[1] / WB_MPA);

@@ -176,7 +176,7 @@ static const struct wb_key cloud_rows[] = {
     {"sample", INTEGER, "number of the piece"},
     {"points", OBJECT | LIST, "points", &wb_moment_curvature_keys},
 };
-static WB_KEYS(cloud, "moment_points", "The points of a sample.");
+static WB_KEYS(cloud, "moment_points", "The points of a specimen.");
 
 static const struct wb_key later_rows[] = {
     {"sample", LATER(sample), "number of the piece"},
@@ -207,7 +207,7 @@ static const struct wb_key valley_rows[] = {
     {"hardening_exponent_low", VALLEY(exponent_low) | UNKNOWN, "least n within that limit"},
     {"hardening_exponent_high", VALLEY(exponent_high) | UNKNOWN, "largest n within that limit"},
 };
-static WB_KEYS(valley, "ludwik_on_loading", "K and n of the first loading of the first sample.");
+static WB_KEYS(valley, "ludwik_on_loading", "K and n of the first loading of the first specimen.");
 
 static const struct wb_key wb_recordings_cycle_rows[] = {
     {.of = &wb_cycle_json_keys},

@@ -59,7 +59,7 @@ enum wb_status wb_recordings_cycle_figures_ways(struct wb_figures_item *item)
         "weights included.",
         measured_of(item), wb_candidate_name(c->chosen));
     if (c->n_members > WB_FIGURES_CYCLE_MOST)
-        wb_text_append(&item->caption, " The first %d of %d samples.", WB_FIGURES_CYCLE_MOST,
+        wb_text_append(&item->caption, " The first %d of %d specimens.", WB_FIGURES_CYCLE_MOST,
                        c->n_members);
     wb_figures_cycle_add_panels(item->figure, c, wb_palette_wire(item->index));
     return WB_OK;
@@ -134,7 +134,7 @@ enum wb_status wb_recordings_cycle_figures_residuals(struct wb_figures_item *ite
     const double end = round_end(largest_residual(cycle));
     WB_TRY(wb_recordings_draw_start(item, "residuals", WB_PDF_WIDTH, 135.0));
     wb_text_append(&item->caption,
-                   "Computed less measured tension of the same samples (dots: loading, rings: "
+                   "Computed less measured tension of the same specimens (dots: loading, rings: "
                    "unloading). Points that the fit counts for less than half are marked as "
                    "outliers.");
     for (int i = 0; i < panels_of(cycle); i++) {
@@ -217,8 +217,8 @@ enum wb_status wb_recordings_cycle_figures_prediction(struct wb_figures_item *it
         ((const struct wb_recordings_results *)item->results)->campaign;
     WB_TRY(wb_recordings_draw_start(item, "prediction", WB_PDF_WIDTH, 165.0));
     wb_text_append(&item->caption,
-                   "First loading and unloading at %g mm, mean of the samples, %s, and what the "
-                   "law of the %g mm samples (%s) predicts of them: RMS %.2f %% of "
+                   "First loading and unloading at %g mm, mean of the specimens, %s, and what the "
+                   "law of the %g mm specimens (%s) predicts of them: RMS %.2f %% of "
                    "<i>F</i><sub>max</sub> = %.1f mN on loading",
                    campaign->length[WB_RECORDINGS_VALIDATION] / WB_MM, measured_of(item),
                    campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
@@ -318,7 +318,7 @@ enum wb_status wb_recordings_cycle_figures_forest(struct wb_figures_item *item)
     WB_TRY(wb_recordings_draw_start(item, "forest", WB_PDF_HALF_WIDTH, 200.0));
     wb_text_append(
         &item->caption,
-        "<i>EI</i> of each sample, %s: dots of the chosen law, lines over the laws in "
+        "<i>EI</i> of each specimen, %s: dots of the chosen law, lines over the laws in "
         "range. Below them %sthe range of the mean over the laws.",
         measured_of(item),
         wb_recordings_cycle_is_refuted(cycle) ? "" : "the mean with its interval of 95 %, and ");
@@ -477,7 +477,7 @@ enum wb_status wb_recordings_cycle_figures_all_moments(struct wb_figures_item *i
             WB_TRY(wb_recordings_draw_start(item, "moments", WB_PDF_WIDTH, 132.0));
             wb_text_append(&item->caption,
                            "Moment over curvature of the first loading, by the chosen laws, with "
-                           "the interval of the mean of the samples (95 %%). Triangles: the "
+                           "the interval of the mean of the specimens (95 %%). Triangles: the "
                            "residual curvature after unloading from the end of the curve.");
             panel = add_moment_panel(item->figure);
         }
@@ -575,10 +575,10 @@ static enum wb_status add_pairs(struct wb_panel *panel, struct wb_figures_item *
         const struct wb_figure_style ring = {
             .colour = wb_palette_grey(), .marker = WB_MARKER_RING, .marker_size = 6.0};
         wb_figures_add_point(&point, paper_n, paper_K / WB_MPA);
-        wb_figures_put_points(panel, "paper's route, all samples", &point, &ring);
+        wb_figures_put_points(panel, "paper's route, all specimens", &point, &ring);
     } else {
         wb_text_append(&item->caption,
-                       " The paper's route, with all samples, ended far outside, at <i>K</i> = "
+                       " The paper's route, with all specimens, ended far outside, at <i>K</i> = "
                        "%.0f MPa and <i>n</i> = %.3f.",
                        paper_K / WB_MPA, paper_n);
     }

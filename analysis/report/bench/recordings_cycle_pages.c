@@ -102,13 +102,13 @@ static void put_laws(struct wb_document *document, const struct wb_recordings_re
     };
     struct wb_document_table *const table = wb_document_table(
         document,
-        "From the first loading and unloading of each sample. Stiffness: change of the moment over "
-        "that of the curvature, of the first 1 /m during unloading from the largest curvature; "
-        "where there is no unloading, from straight to 1 /m. Residual curvature ratio: curvature "
-        "that remains at zero moment, over the curvature that the wire was bent to. 95 %: interval "
-        "from all contributions that the uncertainty budgets state. Over laws: range over all laws "
-        "whose misfit is at most twice the best. Misfit: RMS of the best law over loading and "
-        "unloading, over <i>F</i><sub>max</sub>; above 3 % only ranges are given.",
+        "From the first loading and unloading of each specimen. Stiffness: change of the moment "
+        "over that of the curvature, of the first 1 /m during unloading from the largest "
+        "curvature; where there is no unloading, from straight to 1 /m. Residual curvature ratio: "
+        "curvature that remains at zero moment, over the curvature that the wire was bent to. 95 "
+        "%: interval from all contributions that the uncertainty budgets state. Over laws: range "
+        "over all laws whose misfit is at most twice the best. Misfit: RMS of the best law over "
+        "loading and unloading, over <i>F</i><sub>max</sub>; above 3 % only ranges are given.",
         WB_COUNT(columns), columns);
     for (int i = 0; i < results->n_wires; i++)
         put_wire(table, &results->wires[i]);
@@ -212,11 +212,11 @@ static void put_stiffnesses(struct wb_document *document,
         &caption,
         "Stiffness (N mm\xc2\xb2) with the interval of the mean of the samples: change of the "
         "moment over the change of the curvature; unloading from the largest curvature, secant "
-        "from straight. From: the smallest curvature that the data of all samples resolve; values "
-        "below it, in grey, and at zero depend on the law alone.");
+        "from straight. From: the smallest curvature that the data of all specimens resolve; "
+        "values below it, in grey, and at zero depend on the law alone.");
     if (results->pool.degrees > 0)
         wb_text_append(&caption,
-                       " The interval of <i>EI</i> is from the scatter of all wires' samples "
+                       " The interval of <i>EI</i> is from the scatter of all wires' specimens "
                        "together, <i>s</i> of ln <i>EI</i> %.3f with %d degrees of freedom.",
                        results->pool.deviation, results->pool.degrees);
     struct wb_document_table *const table =
@@ -237,8 +237,8 @@ static void put_moments(struct wb_document *document, const struct wb_recordings
     struct wb_document_table *const table = wb_document_table(
         document,
         "Bending moment <i>M</i> of a first loading at parts of the largest curvature "
-        "<i>\xce\xba</i><sub>max</sub> that all samples of the wire reached at the clamp, with the "
-        "interval of the mean of the samples. Beyond it the law is extrapolated.",
+        "<i>\xce\xba</i><sub>max</sub> that all specimens of the wire reached at the clamp, with "
+        "the interval of the mean of the specimens. Beyond it the law is extrapolated.",
         2 + WB_CYCLE_MOMENTS, columns);
     for (int i = 0; i < results->n_wires; i++)
         put_moments_of(table, &results->wires[i]);
@@ -280,8 +280,8 @@ static void put_predictions(struct wb_document *document,
     wb_document_heading(document, 2, "prediction", "How well another length is predicted");
     struct wb_document_table *const table = wb_pages_table(
         document, WB_COUNT(columns), columns,
-        "Mean of the samples of %g mm beside the prediction by the laws of the %g mm samples; RMS "
-        "over <i>F</i><sub>max</sub>. Bound: exceeded on loading or in another part in one of "
+        "Mean of the specimens of %g mm beside the prediction by the laws of the %g mm specimens; "
+        "RMS over <i>F</i><sub>max</sub>. Bound: exceeded on loading or in another part in one of "
         "twenty validations of a right law, because specimens differ. Residual deflection: where "
         "the force during unloading has come down to that at zero deflection.",
         length[WB_RECORDINGS_VALIDATION] / WB_MM, length[WB_RECORDINGS_CALIBRATION] / WB_MM);
@@ -370,17 +370,17 @@ static void put_scores(struct wb_document *document, const struct wb_recordings_
         {"Unloading, RMS", PART, OF(cycles.rms), WB_PERCENT, 2, .needs_unloading = true},
         {"Unloading, largest error", PART, OF(cycles.largest_error), WB_PERCENT, 2,
          .needs_unloading = true},
-        {"Unloading with each sample as stiff as its loading, RMS", PART,
+        {"Unloading with each specimen as stiff as its loading, RMS", PART,
          OF(bounds[WB_VALIDATE_UNLOADING].found), WB_PERCENT, 2},
         {"Unloading, bound", PART, OF(bounds[WB_VALIDATE_UNLOADING].bound), WB_PERCENT, 2},
         {"Residual deflection, measured", "mm", OF(cycles.residual_measured), WB_MM, 2,
          .needs_unloading = true},
         {"Residual deflection, predicted", "mm", OF(cycles.residual_computed), WB_MM, 2,
          .needs_unloading = true},
-        {"Residual deflection with each sample as stiff, off by", "mm",
+        {"Residual deflection with each specimen as stiff, off by", "mm",
          OF(bounds[WB_VALIDATE_RESIDUAL].found), WB_MM, 2},
         {"Residual deflection, bound", "mm", OF(bounds[WB_VALIDATE_RESIDUAL].bound), WB_MM, 2},
-        {"Shapes, RMS of the mean displacement over the samples", "mm",
+        {"Shapes, RMS of the mean displacement over the specimens", "mm",
          OF(bounds[WB_VALIDATE_SHAPES].found), WB_MM, 2},
         {"Shapes, bound", "mm", OF(bounds[WB_VALIDATE_SHAPES].bound), WB_MM, 2},
         {"Shapes, RMS distance", "mm", OF(shape_rms), WB_MM, 2},
@@ -392,7 +392,7 @@ static void put_scores(struct wb_document *document, const struct wb_recordings_
         return;
     struct wb_document_table *const table = wb_document_table(
         document,
-        "The same samples by the law of this chapter and by that of the paper's route, for each "
+        "The same specimens by the law of this chapter and by that of the paper's route, for each "
         "part of the test.",
         WB_COUNT(columns), columns);
     wb_recordings_cycle_put_scores(table, scores, WB_COUNT(scores),
@@ -552,7 +552,7 @@ static void put_ranked_numbers(struct wb_document *document, const struct wb_cyc
                                                         {.heading = "Parameters", .wraps = true}};
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Parameters of the laws in range: means over the samples, of Ludwik's law of logarithms.",
+        "Parameters of the laws in range: means over the specimens, of Ludwik's law of logarithms.",
         WB_COUNT(columns), columns);
     for (int i = 0; i < c->n_ranked; i++) {
         struct wb_text numbers = {0}, typeset = {0};
@@ -607,7 +607,7 @@ static void put_specimens(struct wb_document *document, const struct wb_recordin
         {.heading = "Outliers", .right = true, .wraps = true},
     };
     const struct wb_cycle_calibration *const c = &cycle->calibration;
-    wb_document_heading(document, 2, "", "Samples");
+    wb_document_heading(document, 2, "", "Specimens");
     struct wb_document_table *const table = wb_document_table(
         document,
         "Each sample fitted by itself with the chosen law. Residual deflection: as measured, where "
@@ -698,7 +698,7 @@ static void put_parts(struct wb_document *document, const struct wb_law *law)
     struct wb_document_table *const table = wb_pages_table(
         document, 1 + n, columns,
         "Parts side by side that share the strain, each elastic up to its yield strain; means over "
-        "the samples. Hardening: %s. %s: %.3g.",
+        "the specimens. Hardening: %s. %s: %.3g.",
         wb_law_rule_name(law),
         law->is_combined ? "Tangent modulus of a yielded part over its modulus"
                          : "Share of the area with isotropic hardening",
@@ -727,7 +727,7 @@ static void put_chaboche(struct wb_document *document, const struct wb_law *law)
         "Chaboche's law: <i>E</i> = %.0f MPa; yields at %.3f MPa on either side of the sum of the "
         "back stresses, and this yield stress grows. Modulus: initial slope over plastic strain; "
         "rate: <i>\xce\xb3</i> of a back stress, <i>b</i> of the yield stress. Means over the "
-        "samples.",
+        "specimens.",
         law->material.youngs_modulus / WB_MPA, law->material.yield_stress / WB_MPA);
     for (int i = -1; i < law->n_backs; i++) {
         char name[40];
@@ -780,7 +780,7 @@ static void put_law(struct wb_document *document, const struct wb_recordings_cyc
             wb_text_append(&text, " %s",
                            c->travel_share < 0.35
                                ? "A travel of at least 0.35 of the length would determine it."
-                               : "More samples, or an unloading, would determine it.");
+                               : "More specimens, or an unloading, would determine it.");
     }
     if (c->law.n_maxwell > 0) {
         struct wb_text relaxation = {0};

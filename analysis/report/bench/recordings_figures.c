@@ -396,7 +396,7 @@ static void add_measured(struct wb_panel *panel, const struct wb_curve *curve,
 {
     char label[80];
     if (curve->n_samples > 1)
-        snprintf(label, sizeof label, "range of %d samples", curve->n_samples);
+        snprintf(label, sizeof label, "range of %d specimens", curve->n_samples);
     wb_figures_add_range(panel, label, curve, colour);
     snprintf(label, sizeof label, curve->n_samples > 1 ? "measured, mean" : "measured");
     const struct wb_figure_style style = {.colour = colour, .width = 1.6};
@@ -436,11 +436,12 @@ static enum wb_status draw_step(struct wb_figures_item *item, enum wb_recordings
 static enum wb_status draw_calibration(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
-    wb_text_append(&item->caption,
-                   "Calibration at %g mm: mean of the samples, %s, and the calibrated beam. Inset: "
-                   "markers of one sample and computed shape at half and at full deflection.",
-                   results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
-                   wb_recordings_draw_measured(item->results));
+    wb_text_append(
+        &item->caption,
+        "Calibration at %g mm: mean of the specimens, %s, and the calibrated beam. Inset: "
+        "markers of one specimen and computed shape at half and at full deflection.",
+        results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
+        wb_recordings_draw_measured(item->results));
     return draw_step(item, WB_RECORDINGS_CALIBRATION, 1.25);
 }
 
@@ -450,7 +451,7 @@ static enum wb_status draw_validation(struct wb_figures_item *item)
     const double *const length = results->campaign->length;
     wb_text_append(
         &item->caption,
-        "Validation at %g mm: mean of the samples, %s, the beam calibrated at %g mm, and for "
+        "Validation at %g mm: mean of the specimens, %s, the beam calibrated at %g mm, and for "
         "contrast the same beam without yielding, which leaves the frame. Inset as before.",
         length[WB_RECORDINGS_VALIDATION] / WB_MM, wb_recordings_draw_measured(item->results),
         length[WB_RECORDINGS_CALIBRATION] / WB_MM);
@@ -468,11 +469,12 @@ static enum wb_status draw_error(struct wb_figures_item *item)
     if (!wb_recordings_results_of(wire, WB_RECORDINGS_CALIBRATION))
         return WB_OK;
     WB_TRY(wb_recordings_draw_start(item, "error", WB_PDF_WIDTH, 155.0));
-    wb_text_append(&item->caption,
-                   "Error of the computed force against the mean force, %s (eq. 18), as part of "
-                   "each curve's own <i>F</i><sub>max</sub>, with its RMS (eq. 19); each sample is "
-                   "computed with its own bow.",
-                   wb_recordings_draw_measured(item->results));
+    wb_text_append(
+        &item->caption,
+        "Error of the computed force against the mean force, %s (eq. 18), as part of "
+        "each curve's own <i>F</i><sub>max</sub>, with its RMS (eq. 19); each specimen is "
+        "computed with its own bow.",
+        wb_recordings_draw_measured(item->results));
     struct wb_panel *const panel = add_error_panel(item);
     for (int k = 0; k < WB_RECORDINGS_PURPOSES; k++) {
         const struct wb_validate_result *const result =
@@ -609,11 +611,12 @@ static enum wb_status draw_all(struct wb_figures_item *item, enum wb_recordings_
 static enum wb_status draw_calibrations(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
-    wb_text_append(&item->caption,
-                   "Mean force and deflection of the samples of %g mm, %s, and the beam calibrated "
-                   "against them%s. Bands: range of the samples.",
-                   results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
-                   wb_recordings_draw_measured(item->results), route_of(results));
+    wb_text_append(
+        &item->caption,
+        "Mean force and deflection of the specimens of %g mm, %s, and the beam calibrated "
+        "against them%s. Bands: range of the specimens.",
+        results->campaign->length[WB_RECORDINGS_CALIBRATION] / WB_MM,
+        wb_recordings_draw_measured(item->results), route_of(results));
     return draw_all(item, WB_RECORDINGS_CALIBRATION);
 }
 
@@ -621,12 +624,12 @@ static enum wb_status draw_validations(struct wb_figures_item *item)
 {
     const struct wb_recordings_results *const results = item->results;
     const double *const length = results->campaign->length;
-    wb_text_append(&item->caption,
-                   "Mean force over deflection of the samples of %g mm, %s, and the prediction of "
-                   "the beams calibrated at %g mm%s. Bands: range of the samples.",
-                   length[WB_RECORDINGS_VALIDATION] / WB_MM,
-                   wb_recordings_draw_measured(item->results),
-                   length[WB_RECORDINGS_CALIBRATION] / WB_MM, route_of(results));
+    wb_text_append(
+        &item->caption,
+        "Mean force over deflection of the specimens of %g mm, %s, and the prediction of "
+        "the beams calibrated at %g mm%s. Bands: range of the specimens.",
+        length[WB_RECORDINGS_VALIDATION] / WB_MM, wb_recordings_draw_measured(item->results),
+        length[WB_RECORDINGS_CALIBRATION] / WB_MM, route_of(results));
     return draw_all(item, WB_RECORDINGS_VALIDATION);
 }
 

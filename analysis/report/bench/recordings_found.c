@@ -109,17 +109,17 @@ static enum wb_validate_part worst_part(const struct wb_validate_result *p,
     return part;
 }
 
-/* "loading within 0.68 % of F_max, where the scatter of specimens explains 3.1". */
+/* "loading within 0.68 % of F_max, where the scatter of specimens explains 3.1 %". */
 static void append_bound(struct wb_text *text, const struct wb_validate_result *p,
                          enum wb_validate_part part)
 {
     const struct wb_validate_bound *const bound = &p->bounds[part];
     const bool is_length = part == WB_VALIDATE_RESIDUAL || part == WB_VALIDATE_SHAPES;
     const double unit = is_length ? WB_MM : WB_PERCENT;
-    wb_text_append(text, "%s%s %.3g %s, where the scatter of specimens explains %.3g",
+    wb_text_append(text, "%s%s %.3g %s, where the scatter of specimens explains %.3g %s",
                    wb_validate_part_name(part), bound->is_exceeded ? " off by" : " within",
                    bound->found / unit, is_length ? "mm" : "% of <i>F</i><sub>max</sub>",
-                   bound->bound / unit);
+                   bound->bound / unit, is_length ? "mm" : "%");
 }
 
 /* Whether specimens of the other length are predicted, with the numbers of the worst part. The
@@ -193,7 +193,7 @@ static void add_note(struct wb_found *found, const struct wb_recordings_results 
                      "curvature.");
     else
         wb_found_say(found, WB_FOUND_NOTE,
-                     "\xc2\xb1: standard uncertainty from the scatter between samples, of "
+                     "\xc2\xb1: standard uncertainty from the scatter between specimens, of "
                      "<i>K</i> a factor. The paper's route states no interval of 95 %%.");
 }
 
@@ -212,8 +212,8 @@ static void append_share(struct wb_text *text, const struct wb_validate_result *
                            ? "more than the scatter of specimens explains"
                            : "no more than the scatter of specimens explains");
     else
-        wb_text_append(text, " What the scatter between samples explains is not known: there are "
-                             "fewer than two samples.");
+        wb_text_append(text, " What the scatter between specimens explains is not known: there are "
+                             "fewer than two specimens.");
 }
 
 /* Continues a list of wires with another one. */

@@ -65,13 +65,13 @@ static WB_KEYS(published, "published", "Published properties of a wire.");
 
 static const struct wb_key measured_rows[] = {
     {"deflection_mm", NUMBER | LIST, "deflections of the curves"},
-    {"force_mN", CURVE_LIST(force) | UNKNOWN, "mean force of the samples"},
-    {"lowest_mN", CURVE_LIST(low) | UNKNOWN, "lowest force of the samples"},
-    {"highest_mN", CURVE_LIST(high) | UNKNOWN, "highest force of the samples"},
+    {"force_mN", CURVE_LIST(force) | UNKNOWN, "mean force of the specimens"},
+    {"lowest_mN", CURVE_LIST(low) | UNKNOWN, "lowest force of the specimens"},
+    {"highest_mN", CURVE_LIST(high) | UNKNOWN, "highest force of the specimens"},
     {"standard_deviation_mN", CURVE_LIST(deviation) | UNKNOWN,
-     "standard deviation of the force between samples"},
+     "standard deviation of the force between specimens"},
 };
-static WB_KEYS(measured, "measured_curve", "The mean curve of the samples.");
+static WB_KEYS(measured, "measured_curve", "The mean curve of the specimens.");
 
 static const struct wb_key computed_rows[] = {
     {"rms_over_F_max", PREDICTION(rms) | UNKNOWN, "RMS error over F_max"},
@@ -86,21 +86,21 @@ static const struct wb_key computed_rows[] = {
 static WB_KEYS(computed, "computed_curve", "A computed curve.");
 
 static const struct wb_key comparison_rows[] = {
-    {"samples", RESULT(curve.n_samples) | OPTIONAL, "number of samples"},
+    {"samples", RESULT(curve.n_samples) | OPTIONAL, "number of specimens"},
     {"length_mm", RESULT(info.length) | OPTIONAL, "free length"},
     {"F_max_mN", RESULT(curve.max_force) | OPTIONAL, "F_max, the largest force of the mean curve"},
     {"max_deflection_mm", RESULT(curve.max_deflection) | OPTIONAL,
      "largest deflection of the mean curve"},
     {"scatter_rms_over_F_max", NUMBER | UNKNOWN | OPTIONAL,
-     "scatter between samples over F_max; null with one sample"},
+     "scatter between specimens over F_max; null with one specimen"},
     {"residual_scatter_rms_over_F_max", NUMBER | UNKNOWN | OPTIONAL,
-     "part of the scatter that remains with the natural shape of each sample"},
+     "part of the scatter that remains with the natural shape of each specimen"},
     {"shape_rms_mm", RESULT(shape_rms) | UNKNOWN | OPTIONAL,
      "RMS distance of the markers from the computed wire"},
     {"shape_largest_mm", RESULT(shape_max) | UNKNOWN | OPTIONAL, "largest such distance"},
     {"shape_points", RESULT(n_shape_points) | OPTIONAL, "number of markers' places compared"},
     {"mean_bow_mm", NUMBER | OPTIONAL, "mean natural offset of the tip"},
-    {"measured", OBJECT | OPTIONAL, "mean curve of the samples", &measured_keys},
+    {"measured", OBJECT | OPTIONAL, "mean curve of the specimens", &measured_keys},
     {"elastoplastic", RESULT(elastoplastic) | OPTIONAL, "curve of the elastoplastic wire",
      &computed_keys},
     {"linear_elastic", RESULT(elastic) | OPTIONAL, "curve of the linear elastic wire",
@@ -129,7 +129,7 @@ static const struct wb_key uncertainties_rows[] = {
     {"hardening_exponent", FITTED(deviation[3]) | UNKNOWN, "of n"},
 };
 static WB_KEYS(uncertainties, "standard_uncertainties",
-               "Standard uncertainties from the scatter between samples.");
+               "Standard uncertainties from the scatter between specimens.");
 
 static const struct wb_key search_rows[] = {
     {"first_strength_coefficient_MPa", FITTED(first_strength_coefficient), "initial guess of K"},
@@ -153,7 +153,7 @@ static const struct wb_key calibration_rows[] = {
     {"standard_uncertainties", OBJECT | OPTIONAL, "their standard uncertainties",
      &uncertainties_keys},
     {"bow_corrected", FITTED(bow_corrected) | OPTIONAL,
-     "E and sigma_Y were corrected for the samples' bows"},
+     "E and sigma_Y were corrected for the specimens' bows"},
     {"remarks", TEXT | LIST | OPTIONAL, "remarks on the properties"},
     {"rms_over_F_max", FITTED(rms) | OPTIONAL, "RMS error of the fit over F_max"},
     {"largest_error_over_F_max", FITTED(max_error) | OPTIONAL,
@@ -192,7 +192,7 @@ static const struct wb_key pooled_rows[] = {
      "its degrees of freedom"},
 };
 static WB_KEYS(pooled, "pooled_interval",
-               "The interval of EI with the scatter of all wires' samples.");
+               "The interval of EI with the scatter of all wires' specimens.");
 
 /* Of a cycle that is done, or not. */
 static const struct wb_key prediction_rows[] = {
@@ -204,7 +204,7 @@ static const struct wb_key cycle_done_rows[] = {
     {"state", TEXT, "the calibration is done", .choices = "done"},
     {.of = &wb_recordings_cycle_keys},
     {"flexural_rigidity_N_mm2_pooled_over_wires", OBJECT | OPTIONAL,
-     "EI with the scatter of all wires' samples", &pooled_keys, .unit = "N mm2"},
+     "EI with the scatter of all wires' specimens", &pooled_keys, .unit = "N mm2"},
     {.of = &prediction_keys},
 };
 static WB_KEYS(cycle_done, "report_cycle", "The calibration on whole cycles.");

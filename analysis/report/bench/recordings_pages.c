@@ -117,7 +117,7 @@ static void put_properties(struct wb_document *document,
         {"Property"},
         {"Unit"},
         {.heading = "Calibrated", .right = true},
-        {.heading = "\xc2\xb1 (samples)", .right = true},
+        {.heading = "\xc2\xb1 (specimens)", .right = true},
         {.heading = "Published", .right = true},
         {.heading = "Ratio", .right = true},
     };
@@ -136,13 +136,14 @@ static void put_properties(struct wb_document *document,
     struct wb_document_table *const table = wb_pages_table(
         document, WB_COUNT(columns), columns,
         "<i>E</i> from eq. 10 at a deflection of %g of the length, <i>\xcf\x83</i><sub>Y</sub> "
-        "from eq. 11 at %g of it. \xc2\xb1: standard uncertainty from the scatter between samples "
-        "(jackknife), of <i>K</i> a factor. %s Published: %s. Ratio: calibrated over published.",
+        "from eq. 11 at %g of it. \xc2\xb1: standard uncertainty from the scatter between "
+        "specimens (jackknife), of <i>K</i> a factor. %s Published: %s. Ratio: calibrated over "
+        "published.",
         settings->elastic_zone,
         settings->yield_point > 0.0 ? settings->yield_point : settings->elastic_zone,
         settings->bow_corrected
-            ? "<i>E</i> and <i>\xcf\x83</i><sub>Y</sub> are corrected for the samples' bows."
-            : "Not corrected for the samples' bows (bow_corrected: false).",
+            ? "<i>E</i> and <i>\xcf\x83</i><sub>Y</sub> are corrected for the specimens' bows."
+            : "Not corrected for the specimens' bows (bow_corrected: false).",
         source);
     for (int i = 0; i < results->n_wires; i++) {
         for (int k = 0; k < 4; k++)
@@ -654,11 +655,12 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
         {.heading = "Validation", .right = true},
     };
     static const struct wb_recordings_score scores[] = {
-        {"RMS (eq. 19), each sample with its own bow", PART, OF(elastoplastic.rms), 1.0, 4},
+        {"RMS (eq. 19), each specimen with its own bow", PART, OF(elastoplastic.rms), 1.0, 4},
         {"RMS beyond 5 mm", PART, OF(elastoplastic.rms_from_5mm), 1.0, 4},
         {"Largest error (eq. 18)", PART, OF(elastoplastic.max_error), 1.0, 4},
         {"RMS of the linear elastic beam", PART, OF(elastic.rms), 1.0, 4},
-        {"Scatter between samples <i>s</i>", PART, OF(scatter_rms), 1.0, 4, .needs_scatter = true},
+        {"Scatter between specimens <i>s</i>", PART, OF(scatter_rms), 1.0, 4,
+         .needs_scatter = true},
         {"Scatter beyond the natural shapes <i>r</i>", PART, OF(residual_scatter_rms), 1.0, 4,
          .needs_scatter = true},
         {"RMS of a perfect model, about", PART, OF(expected_rms), 1.0, 4},
@@ -667,7 +669,7 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
         {"Shapes, RMS distance", "mm", OF(shape_rms), WB_MM, 2},
         {"Shapes, largest distance", "mm", OF(shape_max), WB_MM, 2},
         {"<i>F</i><sub>max</sub>", "mN", OF(curve.max_force), WB_MN, 1},
-        {"Largest deflection of all samples", "mm", OF(curve.max_deflection), WB_MM, 1},
+        {"Largest deflection of all specimens", "mm", OF(curve.max_deflection), WB_MM, 1},
     };
     const struct wb_validate_result *const v =
         wb_recordings_results_of(wire, WB_RECORDINGS_VALIDATION);
@@ -681,19 +683,19 @@ static void put_numbers(struct wb_document *document, const struct wb_recordings
     wb_document_heading(document, 2, "", "Numbers");
     struct wb_document_table *const table = wb_document_table(
         document,
-        "Scatter <i>s</i>: standard deviation between the samples at the same deflection, RMS over "
-        "all deflections; <i>r</i>: what remains of it when each sample is computed with its own "
-        "natural shape, the model's error with the bow included. A perfect model, one of the "
-        "product's mean, shows an RMS of about <i>s</i><sub>k</sub> <i>G</i> "
-        "(1/<i>n</i> + 1/<i>m</i>)<sup>1/2</sup> with <i>n</i> samples here and <i>m</i> "
-        "calibrated on, whose stiffness has the standard deviation <i>s</i><sub>k</sub> (of its "
-        "logarithm, pooled); <i>G</i> is what stiffness changes in the curve. Student's <i>t</i> "
-        "times as much is exceeded in one of twenty validations. Share: its square over "
-        "RMS<sup>2</sup>, at most 1; near 0 the error is the model's.",
+        "Scatter <i>s</i>: standard deviation between the specimens at the same deflection, RMS "
+        "over all deflections; <i>r</i>: what remains of it when each specimen is computed with "
+        "its own natural shape, the model's error with the bow included. A perfect model, one of "
+        "the product's mean, shows an RMS of about <i>s</i><sub>k</sub> <i>G</i> (1/<i>n</i> + "
+        "1/<i>m</i>)<sup>1/2</sup> with <i>n</i> specimens here and <i>m</i> calibrated on, whose "
+        "stiffness has the standard deviation <i>s</i><sub>k</sub> (of its logarithm, pooled); "
+        "<i>G</i> is what stiffness changes in the curve. Student's <i>t</i> times as much is "
+        "exceeded in one of twenty validations. Share: its square over RMS<sup>2</sup>, at most 1; "
+        "near 0 the error is the model's.",
         WB_COUNT(columns), columns);
     wb_recordings_cycle_put_scores(table, scores, WB_COUNT(scores),
                                    (const struct wb_validate_result *[2]){&fit, v});
-    wb_recordings_cycle_put_score(table, "Mean bow of the samples", "mm", bows, 2);
+    wb_recordings_cycle_put_score(table, "Mean bow of the specimens", "mm", bows, 2);
 }
 
 static void put_remarks(struct wb_document *document, const struct wb_calibrate_result *result)
@@ -871,7 +873,7 @@ static void put_settings(struct wb_document *document, const struct wb_recording
     wb_pages_row_pair(table, WB_TONE_PLAIN, "Step", "%g mm", s->step / WB_MM);
     wb_document_cell(table, WB_TONE_QUIET, "between the deflections that are compared");
     wb_pages_row_pair(table, WB_TONE_PLAIN, "Initial shape",
-                      s->straight ? "straight" : "mean of the samples");
+                      s->straight ? "straight" : "mean of the specimens");
     wb_document_cell(table, WB_TONE_QUIET, "natural shape of the computed wire");
     wb_pages_row_pair(table, WB_TONE_PLAIN, "Restart", s->restart ? "once" : "no");
     wb_document_cell(table, WB_TONE_QUIET, "of the search, from its optimum");
