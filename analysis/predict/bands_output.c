@@ -356,8 +356,9 @@ void wb_bands_output_summarise(const struct wb_bands *bands, struct wb_text *tex
     }
     wb_text_append(text, "90 %% bands of %d runs a case, with the model's %g %%\n\n", bands->runs,
                    wb_bands_model_error() / WB_PERCENT);
-    wb_text_append(text, "%-*s %72s%s\n%-*s wires packing   layers outline     mm  %-27s%-23s%s\n",
-                   name_width, "", "", "springback of the      residual curvature", name_width,
+    wb_text_append(text,
+                   "%-*s%68s%-24s%s\n%-*s wires packing   layers outline     mm  %-28s%-24s%s\n",
+                   name_width, "", "", "springback of the", "residual curvature", name_width,
                    "case", "force N (low to high)", "deflection", "ratio (low to high)");
     for (int i = 0; i < bands->n_cases; i++)
         append_case_row(text, &bands->cases[i], name_width);
