@@ -163,7 +163,7 @@ static void print_finding(const struct options *o, const struct table *table)
     wb_finding_print(&finding);
 }
 
-static int print_json(const struct options *o, const struct table *table)
+static void print_json(const struct options *o, const struct table *table)
 {
     const double squared = WB_MM * WB_MM;
     struct wb_json *const root = wb_json_create();
@@ -183,7 +183,7 @@ static int print_json(const struct options *o, const struct table *table)
         wb_json_set_number(point, "bonded_moment_Nmm", table->bonded[i] / WB_NMM);
         wb_json_set_number(point, "sliding_moment_Nmm", table->sliding[i] / WB_NMM);
     }
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 int wb_calibrate_constituents(int argc, char **argv)
@@ -191,12 +191,13 @@ int wb_calibrate_constituents(int argc, char **argv)
     struct options options = {.largest_curvature = 50.0};
     struct table table;
     wb_settings_parse_table(&argp, &wb_layers_table, &options.layers, 1, argc, argv, &options);
-    int code = wb_command_exit(run(&options, &table));
-    if (code == WB_EXIT_OK && options.common.json)
-        code = print_json(&options, &table);
-    else if (code == WB_EXIT_OK)
+    if (run(&options, &table) != WB_OK)
+        return WB_EXIT_FAILED;
+    if (options.common.json) {
+        print_json(&options, &table);
+    } else {
         print_text(&options, &table);
-    if (code == WB_EXIT_OK && !options.common.json)
         print_finding(&options, &table);
-    return code;
+    }
+    return WB_EXIT_OK;
 }

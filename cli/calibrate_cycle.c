@@ -408,7 +408,7 @@ static void put_settings(struct wb_json *object, const struct wb_cycle_calibrate
     }
 }
 
-int wb_calibrate_cycle_print_json(const struct wb_calibrate_cycle *cycle)
+void wb_calibrate_cycle_print_json(const struct wb_calibrate_cycle *cycle)
 {
     const struct wb_cycle_calibration *const c = &cycle->calibration;
     const struct wb_test_info *const info = &c->members[0].data.info;
@@ -423,5 +423,5 @@ int wb_calibrate_cycle_print_json(const struct wb_calibrate_cycle *cycle)
     wb_cycle_check_put(wb_json_set_array(root, "remarks"), &cycle->remarks);
     put_settings(wb_json_set_object(root, "settings"), &cycle->settings);
     wb_json_set_number(root, "cpu_s", c->cpu_s);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }

@@ -19,7 +19,6 @@ void wb_calibrate_cycle_print(const struct wb_calibrate_cycle *cycle, const char
 WB_MUST_CHECK enum wb_status wb_calibrate_cycle_draw(const struct wb_calibrate_cycle *cycle,
                                                      const char *path);
 
-/* Returns an exit code. */
-int wb_calibrate_cycle_print_json(const struct wb_calibrate_cycle *cycle);
+void wb_calibrate_cycle_print_json(const struct wb_calibrate_cycle *cycle);
 
 #endif

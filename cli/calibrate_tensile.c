@@ -290,7 +290,7 @@ static void set_specimens(struct wb_json *root, const struct wb_tensile_result *
     }
 }
 
-static int print_json(const struct options *o, const struct wb_tensile_result *r)
+static void print_json(const struct options *o, const struct wb_tensile_result *r)
 {
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "wire", r->wire);
@@ -327,7 +327,7 @@ static int print_json(const struct options *o, const struct wb_tensile_result *r
     set_number(eq7, "strength_coefficient_MPa", &r->eq7_strength, WB_MPA);
     set_number(eq7, "hardening_exponent", &r->eq7_exponent, 1.0);
     set_specimens(root, r);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 /* --- the command --- */
@@ -342,6 +342,17 @@ static enum wb_status run(struct options *o, struct wb_tensile_result *result)
     if (!o->common.force && wb_file_exists(o->common.output))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
     return wb_tensile_material_write(result, o->name, &o->material, o->common.output, NULL);
+}
+
+static int deliver(const struct options *o, const struct wb_tensile_result *result)
+{
+    if (o->common.json) {
+        print_json(o, result);
+    } else {
+        print_text(o, result);
+        print_finding(o, result);
+    }
+    return result->follows ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
 int wb_calibrate_tensile(int argc, char **argv)
@@ -365,16 +376,8 @@ int wb_calibrate_tensile(int argc, char **argv)
     wb_setting_fill(&wb_tensile_material_table, &options.material);
     wb_settings_parse(&command, argc, argv, &options);
     int code = wb_command_exit(run(&options, &result));
-    if (code == WB_EXIT_OK) {
-        if (options.common.json) {
-            code = print_json(&options, &result);
-        } else {
-            print_text(&options, &result);
-            print_finding(&options, &result);
-        }
-    }
-    if (code == WB_EXIT_OK && !result.follows)
-        code = WB_EXIT_INCOMPLETE;
+    if (code == WB_EXIT_OK)
+        code = deliver(&options, &result);
     wb_tensile_release(&result);
     wb_datasets_release(&options.datasets);
     wb_command_release(&options.common);

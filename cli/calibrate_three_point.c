@@ -78,8 +78,8 @@ static void print_text(const struct wb_three_point_calibration *c,
         print_member(&c->members[i]);
 }
 
-static int print_json(const struct wb_three_point_calibration *c,
-                      const struct wb_properties *properties)
+static void print_json(const struct wb_three_point_calibration *c,
+                       const struct wb_properties *properties)
 {
     const struct wb_test_info *const info = &c->members[0].data.info;
     struct wb_json *const root = wb_json_create();
@@ -132,7 +132,7 @@ static int print_json(const struct wb_three_point_calibration *c,
         wb_json_set_number(item, "misfit", m->fit.misfit);
     }
     wb_json_set_number(root, "cpu_s", c->cpu_s);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static int count_not_converged(const struct wb_three_point_calibration *c)
@@ -215,9 +215,7 @@ static int deliver(const struct wb_three_point_calibration *c,
     struct wb_properties properties;
     wb_properties_from_three_point(c, &properties);
     if (common->json) {
-        const int code = print_json(c, &properties);
-        if (code != WB_EXIT_OK)
-            return code;
+        print_json(c, &properties);
     } else {
         print_text(c, &properties);
         print_finding(c, &properties, common->output);

@@ -218,7 +218,7 @@ static void describe_series(const struct check *check, struct wb_json *root)
     }
 }
 
-static int print_json(const struct check *check)
+static void print_json(const struct check *check)
 {
     const struct wb_rig *const rig = check->rig;
     struct wb_json *const root = wb_json_create();
@@ -233,7 +233,7 @@ static int print_json(const struct check *check)
         describe_single(check, root);
     wb_json_set_number(root, "tolerance_percent", check->tolerance / WB_PERCENT);
     wb_json_set_boolean(root, "passed", check->passed);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static void print_single(const struct check *check)
@@ -265,11 +265,9 @@ static void print_series(const struct check *check)
     }
 }
 
-static int print(const struct check *check)
+static void print_text(const struct check *check)
 {
     const struct wb_rig *const rig = check->rig;
-    if (check->options->common.json)
-        return print_json(check);
     printf("%sload cell %s, capacity %g g, calibrated %s\n", rig->is_virtual ? "virtual rig: " : "",
            or_not_given(rig->load_cell.serial_number),
            rig->load_cell.capacity / rig->gravity / WB_G,
@@ -280,7 +278,6 @@ static int print(const struct check *check)
         print_single(check);
     printf("%s: tolerance %g %%%s\n", check->passed ? "passed" : "NOT PASSED",
            check->tolerance / WB_PERCENT, check->is_series ? " of the span" : "");
-    return WB_EXIT_OK;
 }
 
 /* Adds the result to the log beside the rig file; if the log cannot be written, that is reported
@@ -338,7 +335,11 @@ int wb_check_cell_run(const struct wb_stage_options *options, const struct wb_ri
         return WB_EXIT_FAILED;
     judge(&check);
     add_to_log(&check);
-    if (print(&check) != WB_EXIT_OK || write_certificate(&check) != WB_OK)
+    if (options->common.json)
+        print_json(&check);
+    else
+        print_text(&check);
+    if (write_certificate(&check) != WB_OK)
         return WB_EXIT_FAILED;
     return check.passed ? WB_EXIT_OK : WB_EXIT_FAILED;
 }

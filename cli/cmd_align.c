@@ -120,13 +120,13 @@ static enum wb_status run(const struct options *o, struct result *results, size_
     return WB_OK;
 }
 
-static int print_json(const struct result *results, size_t n)
+static void print_json(const struct result *results, size_t n)
 {
     struct wb_json *const root = wb_json_create();
     struct wb_json *const list = wb_json_set_array(root, "datasets");
     for (size_t i = 0; i < n; i++)
         wb_datasets_describe(wb_json_append_object(list), &results[i].dataset, results[i].folder);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static void print_finding(const struct options *o, const struct result *results, size_t n)
@@ -170,17 +170,20 @@ static void print_finding(const struct options *o, const struct result *results,
     wb_finding_print(&finding);
 }
 
-static int print_text(const struct options *o, const struct result *results, size_t n)
+static enum wb_status deliver(const struct options *o, const struct result *results, size_t n)
 {
+    if (o->common.json) {
+        print_json(results, n);
+        return WB_OK;
+    }
     for (size_t i = 0; i < n; i++) {
         if (i > 0)
             putchar('\n');
-        if (wb_datasets_print(&results[i].dataset, results[i].folder) != WB_OK)
-            return WB_EXIT_FAILED;
+        WB_TRY(wb_datasets_print(&results[i].dataset, results[i].folder));
     }
     if (n > 0)
         print_finding(o, results, n);
-    return WB_EXIT_OK;
+    return WB_OK;
 }
 
 int wb_cmd_align(int argc, char **argv)
@@ -197,8 +200,7 @@ int wb_cmd_align(int argc, char **argv)
     struct result *const results = wb_memory_new(n, sizeof *results);
     int code = wb_command_exit(run(&options, results, &n_done));
     if (code == WB_EXIT_OK)
-        code = options.common.json ? print_json(results, n_done)
-                                   : print_text(&options, results, n_done);
+        code = wb_command_exit(deliver(&options, results, n_done));
     for (size_t i = 0; i < n_done; i++) {
         if (code == WB_EXIT_OK && !wb_dataset_is_complete(&results[i].dataset))
             code = WB_EXIT_INCOMPLETE;

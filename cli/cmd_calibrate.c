@@ -179,7 +179,7 @@ static void set_path(struct wb_json *root, const struct wb_calibrate_result *res
     }
 }
 
-static int print_json(const struct options *o, const struct wb_calibrate_result *r)
+static void print_json(const struct options *o, const struct wb_calibrate_result *r)
 {
     const struct wb_calibrate_settings *const s = &o->settings;
     struct wb_json *const root = wb_json_create();
@@ -215,7 +215,7 @@ static int print_json(const struct options *o, const struct wb_calibrate_result 
     wb_json_set_number(root, "residual_scatter_rms", r->residual_scatter_rms);
     wb_json_set_number(root, "cpu_s", r->cpu_s);
     set_path(root, r);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static void print_value(const char *name, double value, double deviation, const char *unit)
@@ -346,9 +346,7 @@ static int deliver_paper(const struct options *o, const struct wb_calibrate_resu
             return wb_command_exit(status);
     }
     if (o->common.json) {
-        const int code = print_json(o, result);
-        if (code != WB_EXIT_OK)
-            return code;
+        print_json(o, result);
     } else {
         print_text(o, result);
         print_paper_finding(o, result);
@@ -444,9 +442,7 @@ static int deliver_cycle(const struct options *o)
             return wb_command_exit(status);
     }
     if (o->common.json) {
-        const int code = wb_calibrate_cycle_print_json(&o->cycle);
-        if (code != WB_EXIT_OK)
-            return code;
+        wb_calibrate_cycle_print_json(&o->cycle);
     } else {
         wb_calibrate_cycle_print(&o->cycle, o->common.output, figure);
     }

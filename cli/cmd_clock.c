@@ -32,7 +32,8 @@ static int print(const struct wb_clock_report *report, const struct wb_command_c
         struct wb_json *const root = wb_json_create();
         wb_json_set_text(root, "recording", options->input);
         wb_clock_report_describe(report, root);
-        return wb_command_print_json(root);
+        wb_command_print_json(root);
+        return WB_EXIT_OK;
     }
     const enum wb_status status = wb_clock_report_format(report, &text);
     if (status == WB_OK)

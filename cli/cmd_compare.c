@@ -162,14 +162,11 @@ static enum wb_status run(const struct options *o, struct wb_compare *compare,
     WB_TRY(wb_compare_run(compare, page.properties, page.names, o->within));
     if (o->common.output)
         WB_TRY(wb_compared_write(&page, o->common.output, o->common.force));
-    if (!o->common.json) {
+    if (o->common.json)
+        wb_command_print_json(wb_compare_json(compare, page.properties, page.names));
+    else
         print(o, compare, &page);
-        return WB_OK;
-    }
-    return wb_command_print_json(wb_compare_json(compare, page.properties, page.names)) ==
-                   WB_EXIT_OK
-               ? WB_OK
-               : WB_ERR_MEMORY;
+    return WB_OK;
 }
 
 int wb_cmd_compare(int argc, char **argv)

@@ -110,7 +110,7 @@ static const struct wb_settings_source sources[] = {
 static const struct wb_settings_command command = {
     .argp = &argp, .sources = sources, .n_sources = WB_COUNT(sources), .place = 1};
 
-static int print_json(const struct wb_doctor_report *report)
+static void print_json(const struct wb_doctor_report *report)
 {
     struct wb_json *const root = wb_json_create();
     wb_json_set_boolean(root, "ready", wb_doctor_is_ready(report));
@@ -123,7 +123,7 @@ static int print_json(const struct wb_doctor_report *report)
         wb_json_set_text(item, "text", report->items[i].text);
     }
     wb_json_set_text(root, "picture", report->picture);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static void print(const struct wb_doctor_report *report)
@@ -236,9 +236,9 @@ int wb_cmd_doctor(int argc, char **argv)
     const int code = look_at_bench(&options, &report);
     if (code != WB_EXIT_OK)
         return code;
-    if (options.common.json && print_json(&report) != WB_EXIT_OK)
-        return WB_EXIT_FAILED;
-    if (!options.common.json)
+    if (options.common.json)
+        print_json(&report);
+    else
         print(&report);
     return wb_doctor_is_ready(&report) ? WB_EXIT_OK : WB_EXIT_LIMIT;
 }

@@ -59,14 +59,14 @@ static enum wb_status write_samples(struct wb_recording *recording,
     return wb_export_csv(recording, &rig, source, options->output, counts);
 }
 
-static int print(const struct wb_command_common *options, const struct wb_export_counts *counts)
+static void print(const struct wb_command_common *options, const struct wb_export_counts *counts)
 {
     if (!options->json) {
         printf("%s: %" PRIu64 " load readings, %" PRIu64 " markers, %" PRIu64
                " stage reports, %" PRIu64 " events, %" PRIu64 " clock probes\n",
                options->output, counts->load, counts->mocap, counts->stage, counts->events,
                counts->clock);
-        return WB_EXIT_OK;
+        return;
     }
     struct wb_json *root = wb_json_create();
     wb_json_set_text(root, "folder", options->output);
@@ -76,7 +76,7 @@ static int print(const struct wb_command_common *options, const struct wb_export
     wb_json_set_integer(root, "event_rows", (int64_t)counts->events);
     wb_json_set_integer(root, "clock_rows", (int64_t)counts->clock);
     wb_json_set_integer(root, "damaged_chunks", (int64_t)counts->damaged_chunks);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static bool is_to(const char *argument)
@@ -115,8 +115,9 @@ int wb_cmd_export(int argc, char **argv)
         return WB_EXIT_FAILED;
     /* Damage was logged while reading; the readable part was written. */
     bool written = status == WB_OK || (status == WB_ERR_DATA && counts.load + counts.mocap > 0);
-    if (!written || print(&options, &counts) != WB_EXIT_OK)
+    if (!written)
         return WB_EXIT_FAILED;
+    print(&options, &counts);
     if (counts.damaged_chunks > 0)
         wb_warn("%" PRIu64 " damaged chunk%s left out", counts.damaged_chunks,
                 counts.damaged_chunks == 1 ? " was" : "s were");

@@ -325,7 +325,7 @@ static void add_streams(const struct facts *facts, struct wb_json *root)
     }
 }
 
-static int print_json(struct facts *facts, const char *path)
+static enum wb_status print_json(struct facts *facts, const char *path)
 {
     static const char *const keys[] = {"start_utc",
                                        "ended",
@@ -367,38 +367,35 @@ static int print_json(struct facts *facts, const char *path)
     facts->events = wb_json_set_array(root, "events");
     if (wb_recording_each_event(facts->recording, add_event, facts) == WB_ERR_MEMORY) {
         wb_json_destroy(root);
-        return WB_EXIT_FAILED;
+        return WB_ERR_MEMORY;
     }
     wb_json_set_boolean(root, "whole", wb_survey_is_whole(survey));
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
+    return WB_OK;
 }
 
 int wb_cmd_info(int argc, char **argv)
 {
-    struct wb_info_options all = {.common = {.noun = "file"}};
+    struct wb_info_options options = {.common = {.noun = "file"}};
     char found[WB_PATH];
     for (size_t i = 0; i < WB_SCHEMA_DOCUMENTS; i++)
         wb_complete_value("schema", wb_schema_documents[i].name);
-    wb_command_parse(&argp, argc, argv, &all);
-    if (all.schema)
-        return wb_command_print_json(wb_schema_build(all.schema));
-    all.common.input = wb_command_find(all.common.input, found);
-    const struct wb_command_common options = all.common;
-    const enum wb_file_kind kind = wb_file_kind_find(options.input);
-    if (kind == WB_FILE_BUNDLE || is_shipped_name(options.input, kind))
-        return wb_info_bundle(&all);
+    wb_command_parse(&argp, argc, argv, &options);
+    if (options.schema) {
+        wb_command_print_json(wb_schema_build(options.schema));
+        return WB_EXIT_OK;
+    }
+    const char *const path = options.common.input = wb_command_find(options.common.input, found);
+    const enum wb_file_kind kind = wb_file_kind_find(path);
+    if (kind == WB_FILE_BUNDLE || is_shipped_name(path, kind))
+        return wb_info_bundle(&options);
     if (kind != WB_FILE_RECORDING)
-        return wb_info_file(&all, kind);
+        return wb_info_file(&options, kind);
     struct facts facts = {.recording = NULL};
-    enum wb_status status = gather(&facts, options.input);
-    int code = wb_command_exit(status);
-    if (status == WB_OK && options.json)
-        code = print_json(&facts, options.input);
-    else if (status == WB_OK)
-        code = wb_command_exit(print_text(&facts, options.input));
-    bool whole = wb_survey_is_whole(&facts.survey);
-    status = wb_recording_close(facts.recording);
-    if (code == WB_EXIT_OK && status != WB_OK)
-        code = WB_EXIT_FAILED;
-    return code == WB_EXIT_OK && !whole ? WB_EXIT_INCOMPLETE : code;
+    enum wb_status status = gather(&facts, path);
+    if (status == WB_OK)
+        status = options.common.json ? print_json(&facts, path) : print_text(&facts, path);
+    if (wb_recording_close(facts.recording) != WB_OK || status != WB_OK)
+        return WB_EXIT_FAILED;
+    return wb_survey_is_whole(&facts.survey) ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

@@ -31,8 +31,7 @@ static int deliver(const struct wb_dataset *dataset, const struct wb_command_com
     if (options->json) {
         struct wb_json *const root = wb_json_create();
         wb_datasets_describe(root, dataset, options->output);
-        if (wb_command_print_json(root) != WB_EXIT_OK)
-            return WB_EXIT_FAILED;
+        wb_command_print_json(root);
     } else if (wb_datasets_print(dataset, options->output) != WB_OK) {
         return WB_EXIT_FAILED;
     }

@@ -215,7 +215,7 @@ static const char *end_name(enum wb_sequence_end end)
     return names[end];
 }
 
-static int print_json(const struct wb_bend_test_result *result, const char *output)
+static void print_json(const struct wb_bend_test_result *result, const char *output)
 {
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "recording", result->recorded ? output : NULL);
@@ -239,7 +239,7 @@ static int print_json(const struct wb_bend_test_result *result, const char *outp
     wb_json_set_integer(root, "drops", (int64_t)result->drops);
     wb_json_set_integer(root, "load_readings_missing", (int64_t)result->loss[WB_ROLE_LOAD].missing);
     wb_json_set_integer(root, "mocap_frames_missing", (int64_t)result->loss[WB_ROLE_MOCAP].missing);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static bool draw_figure(const struct wb_series_test *test, const char *path)
@@ -373,9 +373,9 @@ static int deliver(const struct options *o, const struct wb_bend_test_result *re
         has_figure = draw_figure(&results.tests[0], o->figure);
         code = !has_figure && code == WB_EXIT_OK ? WB_EXIT_INCOMPLETE : code;
     }
-    if (o->common.json && print_json(result, output) != WB_EXIT_OK)
-        code = WB_EXIT_FAILED;
-    if (!o->common.json && result->recorded)
+    if (o->common.json)
+        print_json(result, output);
+    else if (result->recorded)
         print_result(result, output, &results, has_figure ? o->figure : NULL, code_of_test);
     wb_series_results_release(&results);
     return code;

@@ -47,7 +47,7 @@ static void print_text(const struct wb_command_common *options, const struct wb_
         printf("  nothing is missing\n");
 }
 
-static int print_json(const struct wb_command_common *options, const struct wb_recover *found)
+static void print_json(const struct wb_command_common *options, const struct wb_recover *found)
 {
     struct wb_json *const root = wb_json_create();
     char missing[600];
@@ -73,7 +73,7 @@ static int print_json(const struct wb_command_common *options, const struct wb_r
         wb_json_set_integer(object, "chunks", (int64_t)s->chunks);
         wb_json_set_integer(object, "missing_chunks", (int64_t)s->missing);
     }
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 int wb_cmd_recover(int argc, char **argv)
@@ -85,9 +85,9 @@ int wb_cmd_recover(int argc, char **argv)
     if (wb_file_kind_check(options.input, WB_FILE_BIT(WB_FILE_RECORDING)) != WB_OK ||
         wb_recover_run(options.input, options.output, &found, NULL) != WB_OK)
         return WB_EXIT_FAILED;
-    if (!options.json)
+    if (options.json)
+        print_json(&options, &found);
+    else
         print_text(&options, &found);
-    else if (print_json(&options, &found) != WB_EXIT_OK)
-        return WB_EXIT_FAILED;
     return wb_recover_is_whole(&found) ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

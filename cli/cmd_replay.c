@@ -101,8 +101,8 @@ static void take_remark(void *context, enum wb_log_level level, int64_t t_ns, co
            player->started ? wb_survey_seconds(player->first_ns, t_ns) : 0.0, kind, text);
 }
 
-static int print(const struct wb_replay_options *options, const struct player *player,
-                 const struct wb_replay_counts *counts, double wall_s)
+static void print(const struct wb_replay_options *options, const struct player *player,
+                  const struct wb_replay_counts *counts, double wall_s)
 {
     double duration_s = wb_survey_seconds(player->first_ns, player->last_ns);
     if (!options->common.json) {
@@ -111,7 +111,7 @@ static int print(const struct wb_replay_options *options, const struct player *p
                options->common.input, player->is_virtual ? "virtual rig, " : "", duration_s,
                counts->chunks, counts->load_samples, counts->mocap_frames, counts->stage_reports,
                counts->damaged_chunks);
-        return WB_EXIT_OK;
+        return;
     }
     struct wb_json *root = wb_json_create();
     wb_json_set_text(root, "recording", options->common.input);
@@ -125,7 +125,7 @@ static int print(const struct wb_replay_options *options, const struct player *p
     wb_json_set_number(root, "duration_s", duration_s);
     wb_json_set_number(root, "wall_s", wall_s);
     wb_json_set_boolean(root, "interrupted", wb_interrupted());
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static enum wb_status play(struct wb_recording *recording, const struct wb_replay_options *options,
@@ -169,8 +169,7 @@ int wb_cmd_replay(int argc, char **argv)
     /* A truncated database is replayed up to its end. */
     if (status != WB_OK && !(status == WB_ERR_DATA && counts.chunks > 0))
         return WB_EXIT_FAILED;
-    if (print(&options, &player, &counts, wall_s) != WB_EXIT_OK)
-        return WB_EXIT_FAILED;
+    print(&options, &player, &counts, wall_s);
     bool whole = status == WB_OK && complete && counts.damaged_chunks == 0 && !wb_interrupted();
     return whole ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

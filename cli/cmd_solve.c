@@ -262,7 +262,7 @@ static void print_csv(const struct wb_solve *solve)
     }
 }
 
-static int print_json(const struct wb_solve *solve)
+static void print_json(const struct wb_solve *solve)
 {
     struct wb_json *const root = wb_json_create();
     struct wb_json *const points = wb_json_set_array(root, "points");
@@ -290,7 +290,7 @@ static int print_json(const struct wb_solve *solve)
             wb_json_set_text(object, "step", row.step);
     }
     wb_solve_describe(solve, root);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static enum wb_status show(void *context, const struct wb_solve *solve)
@@ -298,8 +298,10 @@ static enum wb_status show(void *context, const struct wb_solve *solve)
     struct options *const o = context;
     const struct wb_command_common *const common = &o->common;
     o->has_shown = true;
-    if (common->json)
-        return print_json(solve) == WB_EXIT_OK ? WB_OK : WB_ERR_MEMORY;
+    if (common->json) {
+        print_json(solve);
+        return WB_OK;
+    }
     struct wb_text text = {0};
     if (wb_solve_summarise(solve, &text))
         fputs(wb_text_string(&text), stdout);

@@ -125,7 +125,7 @@ static void show_job(const struct wb_stage_job *job)
                       position);
 }
 
-static int print_job_json(const struct wb_rig *rig, const struct wb_stage_job_result *result)
+static void print_job_json(const struct wb_rig *rig, const struct wb_stage_job_result *result)
 {
     static const char *const ends[] = {"running",     "done",         "limit",
                                        "interrupted", "still_loaded", "failed"};
@@ -138,7 +138,7 @@ static int print_job_json(const struct wb_rig *rig, const struct wb_stage_job_re
     wb_json_set_number(root, "moved_mm", result->moved / WB_MM);
     wb_json_set_number(root, "force_mN", result->force / WB_MN);
     wb_json_set_number(root, "force_change_mN", result->change / WB_MN);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static void report_job(const struct wb_rig *rig, const struct wb_stage_job_result *result,
@@ -175,8 +175,8 @@ static int run_job(const struct wb_stage_options *options, const struct wb_rig *
     wb_stage_job_close(job, &result);
     wb_live_line_close();
     report_job(rig, &result, options->common.json);
-    if (options->common.json && print_job_json(rig, &result) != WB_EXIT_OK)
-        return WB_EXIT_FAILED;
+    if (options->common.json)
+        print_job_json(rig, &result);
     if (result.end == WB_SEQUENCE_DONE)
         return WB_EXIT_OK;
     return result.end == WB_SEQUENCE_FAILED ? WB_EXIT_FAILED : WB_EXIT_INCOMPLETE;

@@ -242,8 +242,8 @@ static void set_prediction(struct wb_json *object, const struct wb_prediction *p
     wb_json_set_boolean(object, "converged", prediction->n_reached == prediction->n);
 }
 
-static int print_json(const struct options *o, const struct wb_properties *properties,
-                      const struct groups *groups)
+static void print_json(const struct options *o, const struct wb_properties *properties,
+                       const struct groups *groups)
 {
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "properties", o->common.input);
@@ -279,7 +279,7 @@ static int print_json(const struct options *o, const struct wb_properties *prope
         wb_validate_json_put_cycles(item, r);
         wb_json_set_number(item, "cpu_s", r->cpu_s);
     }
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static void print_cycles(const struct wb_validate_result *r)
@@ -514,9 +514,7 @@ static int deliver(const struct options *o, const struct wb_properties *properti
             return wb_command_exit(status);
     }
     if (o->common.json) {
-        const int code = print_json(o, properties, groups);
-        if (code != WB_EXIT_OK)
-            return code;
+        print_json(o, properties, groups);
     }
     for (int i = 0; i < groups->n; i++) {
         const struct group *const g = &groups->items[i];

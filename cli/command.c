@@ -148,14 +148,12 @@ int wb_command_exit(enum wb_status status)
     return status == WB_OK ? WB_EXIT_OK : WB_EXIT_FAILED;
 }
 
-int wb_command_print_json(struct wb_json *root)
+void wb_command_print_json(struct wb_json *root)
 {
     char *text;
-    const enum wb_status status = wb_json_format(root, &text);
-    wb_json_destroy(root);
-    if (status != WB_OK)
-        return WB_EXIT_FAILED;
+    if (wb_json_format(root, &text) != WB_OK)
+        exit(WB_EXIT_FAILED);
     fputs(text, stdout);
     free(text);
-    return WB_EXIT_OK;
+    wb_json_destroy(root);
 }

@@ -81,8 +81,9 @@ bool wb_command_ends_in(const char *name, const char *ending);
 /* WB_EXIT_OK or, for a failed library call whose message was logged, WB_EXIT_FAILED. */
 int wb_command_exit(enum wb_status status);
 
-/* Prints the document on stdout and destroys it; returns an exit code. */
-int wb_command_print_json(struct wb_json *root);
+/* Prints the document on stdout and destroys it. Ends the process with WB_EXIT_FAILED if memory ran
+ * out, with a message. */
+void wb_command_print_json(struct wb_json *root);
 
 int wb_cmd_align(int argc, char **argv);
 int wb_cmd_calibrate(int argc, char **argv);

@@ -123,7 +123,7 @@ static enum wb_status export_tables(struct job *job)
     return wb_hdf5_file_write(o->output, job->tables, job->n, source, job->is_virtual);
 }
 
-static int print(const struct job *job)
+static void print(const struct job *job)
 {
     if (!job->options->json) {
         printf("%s:", job->options->output);
@@ -131,7 +131,7 @@ static int print(const struct job *job)
             printf("%s %zu row%s of %s", i > 0 ? "," : "", job->tables[i].n_rows,
                    job->tables[i].n_rows == 1 ? "" : "s", job->tables[i].name);
         printf("\n");
-        return WB_EXIT_OK;
+        return;
     }
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "file", job->options->output);
@@ -141,18 +141,21 @@ static int print(const struct job *job)
         wb_json_set_integer(root, key, (int64_t)job->tables[i].n_rows);
     }
     wb_json_set_integer(root, "damaged_chunks", (int64_t)job->damaged_chunks);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 int wb_export_hdf5(const struct wb_command_common *options)
 {
     struct job job = {.options = options};
     const enum wb_status status = export_tables(&job);
-    int code = status == WB_OK ? print(&job) : wb_command_exit(status);
+    if (status == WB_OK)
+        print(&job);
     for (int i = 0; i < MOST_TABLES; i++)
         wb_columns_release(&job.tables[i]);
     if (job.damaged_chunks > 0)
         wb_warn("%" PRIu64 " damaged chunk%s left out", job.damaged_chunks,
                 job.damaged_chunks == 1 ? " was" : "s were");
-    return code == WB_EXIT_OK && !job.is_complete ? WB_EXIT_INCOMPLETE : code;
+    if (status != WB_OK)
+        return WB_EXIT_FAILED;
+    return job.is_complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

@@ -210,7 +210,7 @@ static void print_finding(const struct wb_dataset *dataset,
     wb_finding_print(&finding);
 }
 
-static int print_json(const struct wb_dataset *dataset, const char *folder)
+static void print_json(const struct wb_dataset *dataset, const char *folder)
 {
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "folder", folder);
@@ -219,7 +219,7 @@ static int print_json(const struct wb_dataset *dataset, const char *folder)
     wb_json_set_integer(root, "sample", dataset->info.sample);
     wb_json_set_boolean(root, "complete", wb_dataset_is_complete(dataset));
     wb_json_set_copy(root, "import", wb_json_get(dataset->document, "import"));
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 /* --- the command --- */
@@ -247,6 +247,18 @@ static enum wb_status run(const struct options *o, struct wb_dataset *dataset,
     return status;
 }
 
+static int deliver(const struct options *o, const struct wb_dataset *dataset,
+                   const struct wb_machine_import_report *report)
+{
+    if (o->common.json) {
+        print_json(dataset, o->common.output);
+    } else {
+        print_text(dataset, report, o->common.output);
+        print_finding(dataset, report, o->common.output);
+    }
+    return wb_dataset_is_complete(dataset) ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
+}
+
 int wb_import_force(int argc, char **argv)
 {
     struct options options = {
@@ -259,14 +271,8 @@ int wb_import_force(int argc, char **argv)
         wb_complete_value("decimal", name->text);
     wb_command_parse(&argp, argc, argv, &options);
     int code = wb_command_exit(run(&options, &dataset, &report));
-    if (code == WB_EXIT_OK && options.common.json)
-        code = print_json(&dataset, options.common.output);
-    else if (code == WB_EXIT_OK)
-        print_text(&dataset, &report, options.common.output);
-    if (code == WB_EXIT_OK && !options.common.json)
-        print_finding(&dataset, &report, options.common.output);
-    if (code == WB_EXIT_OK && !wb_dataset_is_complete(&dataset))
-        code = WB_EXIT_INCOMPLETE;
+    if (code == WB_EXIT_OK)
+        code = deliver(&options, &dataset, &report);
     wb_dataset_release(&dataset);
     return code;
 }

@@ -169,7 +169,7 @@ static void print_missing(const struct wb_mocap_import *r)
         printf("  left out    %zu rows of the force\n", r->force_skipped);
 }
 
-static int print_text(const struct wb_mocap_import *r, const char *output)
+static void print_text(const struct wb_mocap_import *r, const char *output)
 {
     printf("%s: recording\n", output);
     printf("  take        %s, %zu frames, %.2f s at %g/s\n", r->format, r->n_frames, r->duration,
@@ -179,7 +179,6 @@ static int print_text(const struct wb_mocap_import *r, const char *output)
         r->n_markers, r->n_stitched, r->n_points, 100.0 * r->missing);
     print_force(r);
     print_missing(r);
-    return WB_EXIT_OK;
 }
 
 static void print_finding(const struct wb_mocap_import *r, const char *output)
@@ -214,7 +213,7 @@ static void print_finding(const struct wb_mocap_import *r, const char *output)
     wb_finding_print(&finding);
 }
 
-static int print_json(const struct wb_mocap_import *r, const char *output)
+static void print_json(const struct wb_mocap_import *r, const char *output)
 {
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "recording", output);
@@ -251,7 +250,7 @@ static int print_json(const struct wb_mocap_import *r, const char *output)
         wb_json_set_number(force, "tare_mN", r->tare / WB_MN);
         wb_json_set_number(force, "motion_start_s", r->motion_start);
     }
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 static enum wb_status check_files(const struct wb_mocap_import_request *request)
@@ -278,11 +277,11 @@ int wb_import_mocap(int argc, char **argv)
     request->rig_path = wb_command_find(request->rig_path, rig);
     if (check_files(request) != WB_OK || wb_mocap_import_run(&result, request) != WB_OK)
         return WB_EXIT_FAILED;
-    const int code = options.common.json ? print_json(&result, request->output)
-                                         : print_text(&result, request->output);
-    if (code != WB_EXIT_OK)
-        return code;
-    if (!options.common.json)
+    if (options.common.json) {
+        print_json(&result, request->output);
+    } else {
+        print_text(&result, request->output);
         print_finding(&result, request->output);
+    }
     return result.complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

@@ -172,7 +172,7 @@ static void set_meshes(struct wb_json *root, const struct wb_bundle_model *model
     }
 }
 
-static int print_json(const struct wb_bundle_model *model, const char *figure)
+static void print_json(const struct wb_bundle_model *model, const char *figure)
 {
     struct wb_bundle_fact facts[WB_BUNDLE_MODEL_FACTS];
     const int n = wb_bundle_model_facts(model, facts);
@@ -194,7 +194,7 @@ static int print_json(const struct wb_bundle_model *model, const char *figure)
         wb_json_set_number(root, facts[i].key, facts[i].value);
     set_wires(root, model);
     set_meshes(root, model);
-    return wb_command_print_json(root);
+    wb_command_print_json(root);
 }
 
 /* --- as a drawing --- */
@@ -221,8 +221,9 @@ static int print(const struct wb_info_options *options, const struct wb_bundle_m
     if (options->figure && draw(options, model) != WB_OK)
         return WB_EXIT_FAILED;
     if (options->common.json)
-        return print_json(model, options->figure);
-    print_text(model, options->figure);
+        print_json(model, options->figure);
+    else
+        print_text(model, options->figure);
     return WB_EXIT_OK;
 }
 

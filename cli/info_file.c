@@ -117,7 +117,7 @@ int wb_info_file(const struct wb_info_options *options, enum wb_file_kind kind)
         code = WB_EXIT_FAILED;
     } else if (root) {
         wb_json_set_text(root, "next", wb_text_string(&next));
-        code = wb_command_print_json(root);
+        wb_command_print_json(root);
     } else {
         printf("next    %s\n", wb_text_string(&next));
     }

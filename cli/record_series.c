@@ -558,8 +558,7 @@ static int finish(struct run *run)
         wb_json_set_integer(root, "specimens", run->series.n_specimens);
         wb_json_set_integer(root, "specimens_done", n_done);
         wb_series_results_describe(&run->results, root);
-        if (wb_command_print_json(root) != WB_EXIT_OK)
-            return WB_EXIT_FAILED;
+        wb_command_print_json(root);
     } else {
         print_table(stdout, &run->results);
         print_finding(run, n_done, is_complete, has_figure);
