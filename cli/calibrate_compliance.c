@@ -16,10 +16,6 @@
 
 #define WB_LOG_DOMAIN "calibrate"
 
-enum {
-    KEY_COMPLIANCE = WB_KEY_OWN
-};
-
 struct options {
     struct wb_command_common common;
     struct wb_datasets datasets;
@@ -27,22 +23,14 @@ struct options {
 };
 
 static const struct argp_option other_options[] = {
-    {"compliance", KEY_COMPLIANCE, NULL, 0, "Compliance of a machine from a stiff bar", 0},
+    {"compliance", WB_KEY_IGNORED, NULL, 0, "Compliance of a machine from a stiff bar", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    struct options *const o = state->input;
-    if (key == KEY_COMPLIANCE)
-        return 0;
-    return wb_command_parse_common(key, argument, state, &o->common);
-}
-
 static const struct argp argp = {
     .options = other_options,
-    .parser = parse,
+    .parser = wb_command_parse_common,
     .args_doc = "DATASET...",
     .doc = "The compliance of a three-point bending machine (compliance_mm_N of its machine file), "
            "from tests of a stiff elastic bar whose flexural rigidity is known.\v"

@@ -19,10 +19,7 @@
 #define WB_LOG_DOMAIN "calibrate"
 
 enum {
-    KEY_CONSTITUENTS = WB_KEY_OWN,
-    KEY_CONDUCTOR,
-    KEY_JACKET,
-    KEY_CURVATURE,
+    KEY_CURVATURE = WB_KEY_OWN,
     POINTS = 21
 };
 
@@ -34,9 +31,9 @@ struct options {
 };
 
 static const struct argp_option other_options[] = {
-    {"constituents", KEY_CONSTITUENTS, NULL, 0, "A wire from its constituents", 0},
-    {"conductor", KEY_CONDUCTOR, "NAME|FILE", 0, "Material of the conductor", 0},
-    {"jacket", KEY_JACKET, "NAME|FILE", 0, "Material of the jacket", 0},
+    {"constituents", WB_KEY_IGNORED, NULL, 0, "A wire from its constituents", 0},
+    {"conductor", WB_KEY_TEXT(options, conductor), "NAME|FILE", 0, "Material of the conductor", 0},
+    {"jacket", WB_KEY_TEXT(options, jacket), "NAME|FILE", 0, "Material of the jacket", 0},
     {"largest-curvature", KEY_CURVATURE, "K", 0,
      "Curvature up to which moments are printed: 0.001 to 1e6 1/m (50)", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
@@ -47,14 +44,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
     switch (key) {
-    case KEY_CONSTITUENTS:
-        return 0;
-    case KEY_CONDUCTOR:
-        o->conductor = argument;
-        return 0;
-    case KEY_JACKET:
-        o->jacket = argument;
-        return 0;
     case KEY_CURVATURE:
         if (!wb_number_parse(argument, &o->largest_curvature) || !(o->largest_curvature >= 0.001) ||
             !(o->largest_curvature <= 1e6))
@@ -71,7 +60,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     default:
         break;
     }
-    return wb_command_parse_common(key, argument, state, &o->common);
+    return wb_command_parse_common(key, argument, state);
 }
 
 static const struct argp argp = {

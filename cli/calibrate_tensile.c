@@ -16,11 +16,6 @@
 
 #define WB_LOG_DOMAIN "calibrate"
 
-enum {
-    KEY_TENSILE = WB_KEY_OWN,
-    KEY_NAME
-};
-
 struct options {
     struct wb_command_common common;
     struct wb_datasets datasets;
@@ -30,29 +25,18 @@ struct options {
 };
 
 static const struct argp_option other_options[] = {
-    {"tensile", KEY_TENSILE, NULL, 0, "Tensile tests", 0},
+    {"tensile", WB_KEY_IGNORED, NULL, 0, "Tensile tests", 0},
     {"output", 'o', "MATERIAL.yaml", 0, "Write a material file here", 0},
-    {"name", KEY_NAME, "NAME", 0, "Name of the material (name of the wire and the constituent)", 0},
+    {"name", WB_KEY_TEXT(options, name), "NAME", 0,
+     "Name of the material (name of the wire and the constituent)", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the material file", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    struct options *const o = state->input;
-    if (key == KEY_TENSILE)
-        return 0;
-    if (key == KEY_NAME) {
-        o->name = argument;
-        return 0;
-    }
-    return wb_command_parse_common(key, argument, state, &o->common);
-}
-
 static const struct argp argp = {
     .options = other_options,
-    .parser = parse,
+    .parser = wb_command_parse_common,
     .args_doc = "DATASET...",
     .doc =
         "Properties of a conductor, a jacket or a tape from datasets of tensile tests (`wirebench "

@@ -21,43 +21,23 @@ struct options {
     struct wb_align_settings settings;
 };
 
-enum {
-    KEY_RIG = WB_KEY_OWN,
-    KEY_SPECIMEN
-};
-
 static const struct argp_option other_options[] = {
     {"output", 'o', "DATASET", 0,
      "Folder to write; for several recordings, each gets a folder in it", 0},
-    {"rig", KEY_RIG, "FILE", 0,
+    {"rig", WB_KEY_TEXT(options, settings.rig_path), "FILE", 0,
      "Rig file that replaces a wrong one in the recording; the differences are written into the "
      "dataset",
      0},
-    {"specimen", KEY_SPECIMEN, "FILE", 0,
+    {"specimen", WB_KEY_TEXT(options, settings.specimen_path), "FILE", 0,
      "Specimen file that replaces a wrong one in the recording, likewise", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the folder", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    struct options *const options = state->input;
-    switch (key) {
-    case KEY_RIG:
-        options->settings.rig_path = argument;
-        return 0;
-    case KEY_SPECIMEN:
-        options->settings.specimen_path = argument;
-        return 0;
-    default:
-        return wb_command_parse_common(key, argument, state, &options->common);
-    }
-}
-
 static const struct argp argp = {
     .options = other_options,
-    .parser = parse,
+    .parser = wb_command_parse_common,
     .args_doc = "REC.wbr...",
     .doc = "Converts recordings (.wbr or .wbr.zst) into datasets: maps clocks, identifies markers, "
            "corrects tare, drift, filter delay and marker offset, moves the clamp to the origin, "

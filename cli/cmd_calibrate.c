@@ -89,7 +89,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
     if (key != KEY_METHOD)
-        return wb_command_parse_common(key, argument, state, &o->common);
+        return wb_command_parse_common(key, argument, state);
     for (int m = 0; m < WB_METHOD_THREE_POINT; m++) {
         if (strcmp(argument, wb_method_name(m)) == 0) {
             o->method = m;

@@ -14,7 +14,7 @@ static const struct argp_option option_table[] = {
 
 static const struct argp argp = {
     .options = option_table,
-    .parser = wb_command_parse_only_common,
+    .parser = wb_command_parse_common,
     .args_doc = "REC.wbr",
     .doc =
         "Prints how accurate the times of a recording (.wbr or .wbr.zst) are: offset and drift of "

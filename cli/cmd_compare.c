@@ -50,7 +50,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
             argp_error(state, "equivalence limit missing: --within X");
         break;
     }
-    return wb_command_parse_common(key, argument, state, &o->common);
+    return wb_command_parse_common(key, argument, state);
 }
 
 static const struct argp argp = {

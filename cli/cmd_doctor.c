@@ -24,14 +24,11 @@ struct options {
     struct wb_doctor_request request;
 };
 
-enum {
-    KEY_FOLDER = WB_KEY_OWN,
-    KEY_SCAN
-};
-
 static const struct argp_option option_table[] = {
-    {"folder", KEY_FOLDER, "DIR", 0, "Folder for the recordings (the current folder)", 0},
-    {"scan", KEY_SCAN, NULL, 0, "Look for instruments and write a first rig file", 0},
+    {"folder", WB_KEY_TEXT(options, request.folder), "DIR", 0,
+     "Folder for the recordings (the current folder)", 0},
+    {"scan", WB_KEY_FLAG(options, scans), NULL, 0,
+     "Look for instruments and write a first rig file", 0},
     {"output", 'o', "RIG.yaml", 0, "The rig file that --scan writes; it must not exist", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
@@ -62,12 +59,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const options = state->input;
     switch (key) {
-    case KEY_FOLDER:
-        options->request.folder = argument;
-        return 0;
-    case KEY_SCAN:
-        options->scans = true;
-        return 0;
     case ARGP_KEY_ARG:
         if (options->n_words == WORDS)
             argp_error(state, "too many arguments: '%s'", argument);
@@ -77,7 +68,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         check_words(options, state);
         return 0;
     default:
-        return wb_command_parse_common(key, argument, state, &options->common);
+        return wb_command_parse_common(key, argument, state);
     }
 }
 

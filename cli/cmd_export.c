@@ -34,7 +34,7 @@ static const struct argp_option option_table[] = {
 
 static const struct argp argp = {
     .options = option_table,
-    .parser = wb_command_parse_only_common,
+    .parser = wb_command_parse_common,
     .args_doc = "REC.wbr -o DIR\nREC.wbr|DATASET -o FILE.h5\nWIRE|FILE --to KIND",
     .doc = "Decodes a recording (.wbr or .wbr.zst) and writes load.csv, mocap.csv, stage.csv, "
            "events.csv and clock.csv. With -o FILE.h5 it writes the tables of a recording or a "

@@ -87,7 +87,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     default:
         break;
     }
-    return wb_command_parse_common(key, argument, state, &options->common);
+    return wb_command_parse_common(key, argument, state);
 }
 
 static const struct argp argp = {

@@ -16,7 +16,7 @@ static const struct argp_option option_table[] = {
 
 static const struct argp argp = {
     .options = option_table,
-    .parser = wb_command_parse_only_common,
+    .parser = wb_command_parse_common,
     .args_doc = "REC.wbr",
     .doc = "Aligns one recording (.wbr or .wbr.zst) and writes its force-deflection curve and "
            "shapes as figures (SVG, PNG, PDF) and CSV, with a summary that is also printed.\v"

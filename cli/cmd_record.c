@@ -37,32 +37,28 @@ struct options {
 };
 
 enum {
-    OPTION_SPECIMEN = WB_KEY_OWN,
-    OPTION_SERIES,
-    OPTION_OPERATOR,
-    OPTION_NOTES,
-    OPTION_LIVE,
-    OPTION_SERVE,
+    OPTION_SERVE = WB_KEY_OWN,
     OPTION_FIGURE,
-    OPTION_VIRTUAL,
     OPTION_START
 };
 
 static const struct argp_option argp_options[] = {
-    {"specimen", OPTION_SPECIMEN, "SPECIMEN.yaml", 0, "The piece of wire on the bench", 0},
-    {"series", OPTION_SERIES, "SERIES.yaml", 0,
+    {"specimen", WB_KEY_TEXT(options, request.specimen_path), "SPECIMEN.yaml", 0,
+     "The piece of wire on the bench", 0},
+    {"series", WB_KEY_TEXT(options, series), "SERIES.yaml", 0,
      "Test several specimens one after another, as described in this file", 0},
     {"output", 'o', "REC.wbr", 0,
      "The recording to write; it must not exist. For a series: the folder of its recordings", 0},
-    {"operator", OPTION_OPERATOR, "NAME", 0, "Name of the operator, stored in the recording", 0},
-    {"notes", OPTION_NOTES, "TEXT", 0, "Notes, stored in the recording", 0},
-    {"live", OPTION_LIVE, NULL, 0,
+    {"operator", WB_KEY_TEXT(options, request.operator_name), "NAME", 0,
+     "Name of the operator, stored in the recording", 0},
+    {"notes", WB_KEY_TEXT(options, request.notes), "TEXT", 0, "Notes, stored in the recording", 0},
+    {"live", WB_KEY_FLAG(options, views.live), NULL, 0,
      "Show the test full-screen in the terminal: curve, wire, large numbers, instruments", 0},
     {"serve", OPTION_SERVE, "PORT", 0,
      "Show the test as a web page at http://127.0.0.1:PORT/; 0 selects a free port", 0},
     {"figure", OPTION_FIGURE, "FILE", 0,
      "At the end, draw force over deflection as SVG, PNG or PDF; the file must not exist", 0},
-    {"virtual", OPTION_VIRTUAL, NULL, 0,
+    {"virtual", WB_KEY_FLAG(options, is_virtual), NULL, 0,
      "Test on a virtual bench like that of RIG.yaml, in virtual time: a whole test takes one or "
      "two "
      "seconds and needs no instruments",
@@ -111,23 +107,7 @@ static void note_option(void *input, const struct wb_setting *row)
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const options = state->input;
-    struct wb_bend_test_request *const request = &options->request;
     switch (key) {
-    case OPTION_SPECIMEN:
-        request->specimen_path = argument;
-        return 0;
-    case OPTION_SERIES:
-        options->series = argument;
-        return 0;
-    case OPTION_OPERATOR:
-        request->operator_name = argument;
-        return 0;
-    case OPTION_NOTES:
-        request->notes = argument;
-        return 0;
-    case OPTION_LIVE:
-        options->views.live = true;
-        return 0;
     case OPTION_SERVE:
         options->views.serve = true;
         options->views.port = wb_command_integer(state, "--serve", argument, 0, 65535);
@@ -137,9 +117,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         if (!wb_figure_is_file(argument))
             argp_error(state, "--figure: expected NAME.svg, NAME.png or NAME.pdf, not '%s'",
                        argument);
-        return 0;
-    case OPTION_VIRTUAL:
-        options->is_virtual = true;
         return 0;
     case OPTION_START:
         options->of_virtual = "start";
@@ -153,7 +130,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         check_virtual(state, options);
         if (options->series)
             return check_series(state, options);
-        if (!request->specimen_path)
+        if (!options->request.specimen_path)
             argp_error(state, "--specimen SPECIMEN.yaml is missing");
         if (options->common.output && !wb_command_ends_in(options->common.output, ".wbr"))
             argp_error(state,
@@ -164,7 +141,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     default:
         break;
     }
-    return wb_command_parse_common(key, argument, state, &options->common);
+    return wb_command_parse_common(key, argument, state);
 }
 
 static const struct argp argp = {

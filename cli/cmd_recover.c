@@ -17,7 +17,7 @@ static const struct argp_option option_table[] = {
 
 static const struct argp argp = {
     .options = option_table,
-    .parser = wb_command_parse_only_common,
+    .parser = wb_command_parse_common,
     .args_doc = "REC.wbr -o NEW.wbr",
     .doc = "Copies the intact data of a damaged or unclosed recording (.wbr or .wbr.zst, with the "
            "-wal file beside it) into a new one. The old files are only read. Rows are searched "

@@ -22,7 +22,7 @@ static const struct argp_option other_options[] = {
 
 static const struct argp argp = {
     .options = other_options,
-    .parser = wb_command_parse_only_common,
+    .parser = wb_command_parse_common,
     .args_doc = "REC.wbr",
     .doc = "Plays a recording (.wbr or .wbr.zst): the recorded bytes pass the same decoders as on "
            "the bench, with a live line of force, travel and markers on the terminal; at the end "

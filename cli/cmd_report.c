@@ -21,27 +21,22 @@ struct options {
     struct wb_jobs_options jobs; /* for datasets that are missing */
 };
 
-enum {
-    KEY_THREADS = WB_KEY_OWN,
-    KEY_SIGN,
-    KEY_CHECK,
-    KEY_STALE
-};
+#define KEY_THREADS WB_KEY_OWN
 
 static const struct argp_option option_table[] = {
     {"output", 'o', "DIR", 0, "Folder to write", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Replace the report in the folder", 0},
     {"threads", KEY_THREADS, "N", 0, "Threads to compute on, 1 to 16 (as many as cores, 4 at most)",
      0},
-    {"sign", KEY_SIGN, "KEY", 0,
+    {"sign", WB_KEY_TEXT(options, key), "KEY", 0,
      "Also write manifest.json, the SHA-256 sums of the report and its inputs, and its OpenPGP "
      "signature with this gpg key",
      0},
-    {"check", KEY_CHECK, "DIR", 0,
+    {"check", WB_KEY_TEXT(options, check), "DIR", 0,
      "Check the signed report in this folder: signature, files, and the results computed again; "
      "name the campaign file only where it is not found",
      0},
-    {"stale", KEY_STALE, NULL, 0,
+    {"stale", WB_KEY_FLAG(options, lists), NULL, 0,
      "Make no report, but list the datasets that are missing or outdated, and why", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print all numbers, or the list, as one JSON object", 0},
     {0},
@@ -59,7 +54,7 @@ static error_t check_end(struct options *o, struct argp_state *state)
         argp_error(state, "output missing: -o DIR, or --stale for a list");
     if (o->lists && (o->key || o->common.output || wb_jobs_wanted(&o->jobs)))
         argp_error(state, "--stale cannot be combined with --sign, -o, --solve or --slurm");
-    return wb_command_parse_common(ARGP_KEY_END, NULL, state, &o->common);
+    return wb_command_parse_common(ARGP_KEY_END, NULL, state);
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)
@@ -69,24 +64,15 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->jobs;
         return 0;
-    case KEY_STALE:
-        o->lists = true;
-        return 0;
     case KEY_THREADS:
         o->threads = wb_command_integer(state, "--threads", argument, 1, 16);
-        return 0;
-    case KEY_SIGN:
-        o->key = argument;
-        return 0;
-    case KEY_CHECK:
-        o->check = argument;
         return 0;
     case ARGP_KEY_END:
         return check_end(o, state);
     default:
         break;
     }
-    return wb_command_parse_common(key, argument, state, &o->common);
+    return wb_command_parse_common(key, argument, state);
 }
 
 static const struct argp_child children[] = {{&wb_job_options_argp, 0, NULL, 0}, {0}};

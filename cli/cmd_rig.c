@@ -25,7 +25,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         argp_error(state, "--specimen SPECIMEN.yaml is missing");
     if (key == ARGP_KEY_END && !options->run)
         argp_error(state, "folder for the rig file missing: --run DIR");
-    return wb_command_parse_common(key, argument, state, &options->common);
+    return wb_command_parse_common(key, argument, state);
 }
 
 static const struct argp argp = {

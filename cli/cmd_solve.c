@@ -128,7 +128,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         check(state, &o->settings);
         return 0;
     default:
-        return wb_command_parse_common(key, argument, state, &o->common);
+        return wb_command_parse_common(key, argument, state);
     }
 }
 

@@ -79,7 +79,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         check_words(options, state);
         return 0;
     default:
-        return wb_command_parse_common(key, argument, state, &options->common);
+        return wb_command_parse_common(key, argument, state);
     }
 }
 

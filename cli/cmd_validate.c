@@ -45,7 +45,7 @@ static const struct argp_option other_options[] = {
 
 static const struct argp argp = {
     .options = other_options,
-    .parser = wb_command_parse_only_common,
+    .parser = wb_command_parse_common,
     .args_doc = "PROPERTIES.yaml DATASET...",
     .doc =
         "Predicts tests from calibrated properties and scores each part separately: the first "

@@ -16,7 +16,7 @@ static const struct argp_option option_table[] = {
 
 static const struct argp argp = {
     .options = option_table,
-    .parser = wb_command_parse_only_common,
+    .parser = wb_command_parse_common,
     .args_doc = "REC.wbr...",
     .doc =
         "Checks recordings (.wbr or .wbr.zst): checksum and position of every row, gaps in the "

@@ -89,9 +89,22 @@ static void check(struct argp_state *state, const struct wb_command_common *comm
         argp_error(state, "say where the %s", common->destination);
 }
 
-error_t wb_command_parse_common(int key, char *argument, struct argp_state *state,
-                                struct wb_command_common *common)
+error_t wb_command_parse_field(int key, char *argument, struct argp_state *state)
 {
+    char *const input = state->input;
+    if (key < WB_KEY_TEXTS || key >= WB_KEY_FIELDS_END)
+        return ARGP_ERR_UNKNOWN;
+    void *const field = input + (key < WB_KEY_FLAGS ? key - WB_KEY_TEXTS : key - WB_KEY_FLAGS);
+    if (key < WB_KEY_FLAGS)
+        *(const char **)field = argument;
+    else
+        *(bool *)field = true;
+    return 0;
+}
+
+error_t wb_command_parse_common(int key, char *argument, struct argp_state *state)
+{
+    struct wb_command_common *const common = state->input;
     switch (key) {
     case 'o':
         common->output = argument;
@@ -105,6 +118,8 @@ error_t wb_command_parse_common(int key, char *argument, struct argp_state *stat
     case WB_KEY_NO_FIGURE:
         common->no_figure = true;
         return 0;
+    case WB_KEY_IGNORED:
+        return 0;
     case ARGP_KEY_ARG:
         if (!common->noun)
             return ARGP_ERR_UNKNOWN;
@@ -114,13 +129,8 @@ error_t wb_command_parse_common(int key, char *argument, struct argp_state *stat
         check(state, common);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return wb_command_parse_field(key, argument, state);
     }
-}
-
-error_t wb_command_parse_only_common(int key, char *argument, struct argp_state *state)
-{
-    return wb_command_parse_common(key, argument, state, state->input);
 }
 
 void wb_command_release(struct wb_command_common *common)

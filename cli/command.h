@@ -13,6 +13,7 @@
 
 #include "base/file.h"
 #include "base/json.h"
+#include "base/setting.h"
 #include "base/status.h"
 
 enum {
@@ -56,17 +57,28 @@ enum {
     WB_KEY_FORCE = 1000,
     WB_KEY_JSON,
     WB_KEY_NO_FIGURE,
-    WB_KEY_OWN /* the first key for options of a command's own */
+    WB_KEY_IGNORED, /* an option that was looked for before the others, and selected them */
+    WB_KEY_OWN,     /* the first key for options of a command's own */
+    WB_KEY_TEXTS = 1 << 20,
+    WB_KEY_FLAGS = 1 << 21,
+    WB_KEY_FIELDS_END = 1 << 22
 };
 
-/* The default branch of a command's argp parser: handles 'o', WB_KEY_FORCE, WB_KEY_JSON,
- * WB_KEY_NO_FIGURE and the arguments, and checks at the end that argument and output were given. */
-error_t wb_command_parse_common(int key, char *argument, struct argp_state *state,
-                                struct wb_command_common *common);
+/* The key of an option that stores its argument in a `const char *` of the parser's input, and of
+ * one that sets a bool in it: WB_KEY_TEXT(options, figure). A field of another type does not
+ * compile. */
+#define WB_KEY_TEXT(struct_, field_)                                                               \
+    (WB_KEY_TEXTS + (int)WB_ROW_OFFSET(struct_, field_, const char * : 1))
+#define WB_KEY_FLAG(struct_, field_) (WB_KEY_FLAGS + (int)WB_ROW_OFFSET(struct_, field_, bool : 1))
 
-/* The parser of a command without other options besides settings; its input begins with a struct
- * wb_command_common. */
-error_t wb_command_parse_only_common(int key, char *argument, struct argp_state *state);
+/* Sets the field of an option of WB_KEY_TEXT() or WB_KEY_FLAG(); ARGP_ERR_UNKNOWN for other keys.
+ */
+error_t wb_command_parse_field(int key, char *argument, struct argp_state *state);
+
+/* The parser of a command, or the default branch of its own parser: handles 'o', the keys above
+ * WB_KEY_OWN, the fields and the arguments, and checks at the end that argument and output were
+ * given. The parser's input begins with a struct wb_command_common. */
+error_t wb_command_parse_common(int key, char *argument, struct argp_state *state);
 
 void wb_command_release(struct wb_command_common *common); /* the list of arguments */
 

@@ -17,28 +17,18 @@ struct options {
     struct wb_card_settings settings;
 };
 
-enum {
-    KEY_TO = WB_KEY_OWN
-};
-
 static const struct argp_option other_options[] = {
-    {"to", KEY_TO, "KIND", 0, "Kind of card: calculix, abaqus, mujoco, table, table-csv", 0},
+    /* find_kind() reads it, because the other options depend on it. */
+    {"to", WB_KEY_IGNORED, "KIND", 0, "Kind of card: calculix, abaqus, mujoco, table, table-csv",
+     0},
     {"output", 'o', "FILE", 0, "Write the card here; by default it is printed", 0},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the file", 0},
     {0},
 };
 
-static error_t parse(int key, char *argument, struct argp_state *state)
-{
-    struct options *const o = state->input;
-    if (key != KEY_TO)
-        return wb_command_parse_common(key, argument, state, &o->common);
-    return 0; /* find_kind() has read it: the other options depend on it */
-}
-
 static const struct argp argp = {
     .options = other_options,
-    .parser = parse,
+    .parser = wb_command_parse_common,
     .args_doc = "WIRE|FILE --to KIND",
     .doc = "Writes the law of a wire as a card, an input of another program, from a wire file with "
            "properties (a shipped one by its name) or from a properties file of `wirebench "

@@ -16,10 +16,7 @@
 #define WB_LOG_DOMAIN "import"
 
 enum {
-    KEY_SPECIMEN = WB_KEY_OWN,
-    KEY_MACHINE,
-    KEY_COLUMNS,
-    KEY_DELIMITER,
+    KEY_DELIMITER = WB_KEY_OWN,
     KEY_DECIMAL
 };
 
@@ -30,11 +27,11 @@ struct options {
 };
 
 static const struct argp_option argp_options[] = {
-    {"specimen", KEY_SPECIMEN, "SPECIMEN.yaml", 0, "The specimen", 0},
-    {"machine", KEY_MACHINE, "MACHINE.yaml", 0,
+    {"specimen", WB_KEY_TEXT(options, specimen), "SPECIMEN.yaml", 0, "The specimen", 0},
+    {"machine", WB_KEY_TEXT(options, machine), "MACHINE.yaml", 0,
      "The machine and the kind of test: span, radii, ...", 0},
     {"output", 'o', "DATASET", 0, "Folder to write", 0},
-    {"columns", KEY_COLUMNS, "LIST", 0,
+    {"columns", WB_KEY_TEXT(options, columns), "LIST", 0,
      "The columns, and their units where the header has none: time=1,force=2:mN,travel=3 (from the "
      "header)",
      0},
@@ -73,15 +70,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
     switch (key) {
-    case KEY_SPECIMEN:
-        o->specimen = argument;
-        return 0;
-    case KEY_MACHINE:
-        o->machine = argument;
-        return 0;
-    case KEY_COLUMNS:
-        o->columns = argument;
-        return 0;
     case KEY_DELIMITER:
         o->form.delimiter = find_name(state, "delimiter", argument, delimiters);
         return 0;
@@ -96,7 +84,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     default:
         break;
     }
-    return wb_command_parse_common(key, argument, state, &o->common);
+    return wb_command_parse_common(key, argument, state);
 }
 
 static const struct argp argp = {

@@ -13,15 +13,7 @@
 
 #define WB_LOG_DOMAIN "import"
 
-enum {
-    KEY_FORCE = WB_KEY_OWN,
-    KEY_COLUMNS,
-    KEY_CHANNEL,
-    KEY_SPECIMEN,
-    KEY_RIG,
-    KEY_NOTES,
-    KEY_SYNC
-};
+#define KEY_SYNC WB_KEY_OWN
 
 struct options {
     struct wb_command_common common;
@@ -30,16 +22,17 @@ struct options {
 
 static const struct argp_option other_options[] = {
     {"output", 'o', "REC.wbr", 0, "Recording to write", 0},
-    {"specimen", KEY_SPECIMEN, "S.yaml", 0, "The specimen", 0},
-    {"rig", KEY_RIG, "R.yaml", 0, "The bench: load cell, vertical axis of the cameras, strand", 0},
-    {"force", KEY_FORCE, "FILE", 0, "Table of time and force", 0},
-    {"columns", KEY_COLUMNS, "LIST", 0,
+    {"specimen", WB_KEY_TEXT(options, request.specimen_path), "S.yaml", 0, "The specimen", 0},
+    {"rig", WB_KEY_TEXT(options, request.rig_path), "R.yaml", 0,
+     "The bench: load cell, vertical axis of the cameras, strand", 0},
+    {"force", WB_KEY_TEXT(options, request.force_path), "FILE", 0, "Table of time and force", 0},
+    {"columns", WB_KEY_TEXT(options, request.columns), "LIST", 0,
      "Columns of that table and their units: time=1:ms,force=2:mN (from the header)", 0},
-    {"channel", KEY_CHANNEL, "NAME[:UNIT]", 0,
+    {"channel", WB_KEY_TEXT(options, request.channel), "NAME[:UNIT]", 0,
      "Analogue channel of a C3D with the force (the only one in a unit of force)", 0},
     {"sync", KEY_SYNC, "EVENT", 0,
      "Event that synchronises the two clocks: tap or reversal (the better of both)", 0},
-    {"notes", KEY_NOTES, "TEXT", 0, "Notes, stored in the recording", 0},
+    {"notes", WB_KEY_TEXT(options, request.notes), "TEXT", 0, "Notes, stored in the recording", 0},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
     {0},
 };
@@ -71,35 +64,13 @@ static void check(struct argp_state *state, const struct options *options)
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const options = state->input;
-    struct wb_mocap_import_request *const request = &options->request;
-    switch (key) {
-    case KEY_FORCE:
-        request->force_path = argument;
+    if (key == KEY_SYNC) {
+        set_sync(state, &options->request, argument);
         return 0;
-    case KEY_COLUMNS:
-        request->columns = argument;
-        return 0;
-    case KEY_CHANNEL:
-        request->channel = argument;
-        return 0;
-    case KEY_SPECIMEN:
-        request->specimen_path = argument;
-        return 0;
-    case KEY_RIG:
-        request->rig_path = argument;
-        return 0;
-    case KEY_NOTES:
-        request->notes = argument;
-        return 0;
-    case KEY_SYNC:
-        set_sync(state, request, argument);
-        return 0;
-    case ARGP_KEY_END:
-        check(state, options);
-        return wb_command_parse_common(key, argument, state, &options->common);
-    default:
-        return wb_command_parse_common(key, argument, state, &options->common);
     }
+    if (key == ARGP_KEY_END)
+        check(state, options);
+    return wb_command_parse_common(key, argument, state);
 }
 
 static const struct argp argp = {

@@ -10,10 +10,6 @@ enum {
     KEY_DRY_RUN,
     KEY_WORKERS,
     KEY_CORES,
-    KEY_PARTITION,
-    KEY_ACCOUNT,
-    KEY_TIME,
-    KEY_MEMORY,
     KEY_EXTRA
 };
 
@@ -26,10 +22,14 @@ static const struct argp_option option_table[] = {
      "Compute them as a Slurm job array, wait for it and collect the datasets", 2},
     {"slurm-dry-run", KEY_DRY_RUN, NULL, 0,
      "Write the script and list of the array, but submit nothing", 2},
-    {"slurm-partition", KEY_PARTITION, "NAME", 0, "Partition of the array", 2},
-    {"slurm-account", KEY_ACCOUNT, "NAME", 0, "Account that is charged", 2},
-    {"slurm-time", KEY_TIME, "TIME", 0, "Time limit of one run, as sbatch takes it (2:00:00)", 2},
-    {"slurm-memory", KEY_MEMORY, "SIZE", 0, "Memory of one run, as sbatch takes it (2G)", 2},
+    {"slurm-partition", WB_KEY_TEXT(wb_jobs_options, partition), "NAME", 0,
+     "Partition of the array", 2},
+    {"slurm-account", WB_KEY_TEXT(wb_jobs_options, account), "NAME", 0, "Account that is charged",
+     2},
+    {"slurm-time", WB_KEY_TEXT(wb_jobs_options, time), "TIME", 0,
+     "Time limit of one run, as sbatch takes it (2:00:00)", 2},
+    {"slurm-memory", WB_KEY_TEXT(wb_jobs_options, memory), "SIZE", 0,
+     "Memory of one run, as sbatch takes it (2G)", 2},
     {"slurm-option", KEY_EXTRA, "OPTION", 0,
      "Another option of sbatch (--qos=long); may be given several times", 2},
     {0},
@@ -83,18 +83,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_CORES:
         o->cores_per_job = wb_command_integer(state, "--cores-per-run", argument, 1, 1024);
         return 0;
-    case KEY_PARTITION:
-        o->partition = argument;
-        return 0;
-    case KEY_ACCOUNT:
-        o->account = argument;
-        return 0;
-    case KEY_TIME:
-        o->time = argument;
-        return 0;
-    case KEY_MEMORY:
-        o->memory = argument;
-        return 0;
     case KEY_EXTRA:
         add_extra(state, o, argument);
         return 0;
@@ -102,7 +90,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         check(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return wb_command_parse_field(key, argument, state);
     }
 }
 
