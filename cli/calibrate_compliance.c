@@ -23,8 +23,8 @@ struct options {
 };
 
 static const struct argp_option other_options[] = {
-    {"compliance", WB_KEY_IGNORED, NULL, 0, "Compliance of a machine from a stiff bar", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {"compliance", WB_KEY_IGNORED, NULL, 0, "Compliance of a machine from a stiff bar"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

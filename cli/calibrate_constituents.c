@@ -31,12 +31,12 @@ struct options {
 };
 
 static const struct argp_option other_options[] = {
-    {"constituents", WB_KEY_IGNORED, NULL, 0, "A wire from its constituents", 0},
-    {"conductor", WB_KEY_TEXT(options, conductor), "NAME|FILE", 0, "Material of the conductor", 0},
-    {"jacket", WB_KEY_TEXT(options, jacket), "NAME|FILE", 0, "Material of the jacket", 0},
+    {"constituents", WB_KEY_IGNORED, NULL, 0, "A wire from its constituents"},
+    {"conductor", WB_KEY_TEXT(options, conductor), "NAME|FILE", 0, "Material of the conductor"},
+    {"jacket", WB_KEY_TEXT(options, jacket), "NAME|FILE", 0, "Material of the jacket"},
     {"largest-curvature", KEY_CURVATURE, "K", 0,
-     "Curvature up to which moments are printed: 0.001 to 1e6 1/m (50)", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+     "Curvature up to which moments are printed: 0.001 to 1e6 1/m (50)"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

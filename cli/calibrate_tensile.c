@@ -25,12 +25,12 @@ struct options {
 };
 
 static const struct argp_option other_options[] = {
-    {"tensile", WB_KEY_IGNORED, NULL, 0, "Tensile tests", 0},
-    {"output", 'o', "MATERIAL.yaml", 0, "Write a material file here", 0},
+    {"tensile", WB_KEY_IGNORED, NULL, 0, "Tensile tests"},
+    {"output", 'o', "MATERIAL.yaml", 0, "Write a material file here"},
     {"name", WB_KEY_TEXT(options, name), "NAME", 0,
-     "Name of the material (name of the wire and the constituent)", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the material file", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+     "Name of the material (name of the wire and the constituent)"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the material file"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

@@ -23,15 +23,14 @@ struct options {
 
 static const struct argp_option other_options[] = {
     {"output", 'o', "DATASET", 0,
-     "Folder to write; for several recordings, each gets a folder in it", 0},
+     "Folder to write; for several recordings, each gets a folder in it"},
     {"rig", WB_KEY_TEXT(options, settings.rig_path), "FILE", 0,
      "Rig file that replaces a wrong one in the recording; the differences are written into the "
-     "dataset",
-     0},
+     "dataset"},
     {"specimen", WB_KEY_TEXT(options, settings.specimen_path), "FILE", 0,
-     "Specimen file that replaces a wrong one in the recording, likewise", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the folder", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+     "Specimen file that replaces a wrong one in the recording, likewise"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the folder"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

@@ -48,25 +48,21 @@ enum {
 static const struct argp_option other_options[] = {
     {"method", KEY_METHOD, "METHOD", 0,
      "cycle: a law and its hardening rule, fitted to loading and unloading; paper: E, sigma_Y, K "
-     "and n, fitted to the averaged loading (cycle; tests with a follower force: paper)",
-     0},
+     "and n, fitted to the averaged loading (cycle; tests with a follower force: paper)"},
     {"tensile", KEY_TENSILE, NULL, 0,
-     "Tensile tests of a conductor, jacket or tape; see `wirebench calibrate --tensile --help`", 0},
+     "Tensile tests of a conductor, jacket or tape; see `wirebench calibrate --tensile --help`"},
     {"constituents", KEY_CONSTITUENTS, NULL, 0,
      "A wire's rigidity and moments from conductor and jacket; see `wirebench calibrate "
-     "--constituents --help`",
-     0},
+     "--constituents --help`"},
     {"compliance", KEY_COMPLIANCE, NULL, 0,
      "The compliance of a testing machine, from tests of a stiff bar; see `wirebench calibrate "
-     "--compliance --help`",
-     0},
+     "--compliance --help`"},
     {"output", 'o', "PROPERTIES.yaml", 0,
      "Write the properties to this file and, for whole cycles, a figure of measured and computed "
-     "tension to PROPERTIES.svg",
-     0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties and the figure", 0},
-    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "For whole cycles: draw no figure", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+     "tension to PROPERTIES.svg"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the properties and the figure"},
+    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "For whole cycles: draw no figure"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

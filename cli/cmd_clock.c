@@ -8,7 +8,7 @@
 #define WB_LOG_DOMAIN "clock"
 
 static const struct argp_option option_table[] = {
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

@@ -25,11 +25,10 @@ static const double least_within = 1e-4, most_within = 2.0;
 static const struct argp_option option_table[] = {
     {"within", KEY_WITHIN, "X", 0,
      "Equivalence limit of the logarithm of the ratio, 0.0001 to 2: 0.1 is -9.5 to +10.5 % "
-     "(required)",
-     0},
-    {"output", 'o', "FILE.pdf", 0, "Write one page (PDF)", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Replace the file", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+     "(required)"},
+    {"output", 'o', "FILE.pdf", 0, "Write one page (PDF)"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Replace the file"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

@@ -26,11 +26,11 @@ struct options {
 
 static const struct argp_option option_table[] = {
     {"folder", WB_KEY_TEXT(options, request.folder), "DIR", 0,
-     "Folder for the recordings (the current folder)", 0},
+     "Folder for the recordings (the current folder)"},
     {"scan", WB_KEY_FLAG(options, scans), NULL, 0,
-     "Look for instruments and write a first rig file", 0},
-    {"output", 'o', "RIG.yaml", 0, "The rig file that --scan writes; it must not exist", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+     "Look for instruments and write a first rig file"},
+    {"output", 'o', "RIG.yaml", 0, "The rig file that --scan writes; it must not exist"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 
@@ -78,12 +78,10 @@ static const struct argp argp = {
     .args_doc = "RIG.yaml [SPECIMEN.yaml]\n--scan [ADDRESS...] -o RIG.yaml",
     .doc =
         "Checks whether the bench is ready for a test: opens the ports of the rig file, listens "
-        "for "
-        "some seconds, and prints for each item that a test needs whether it is ready, or what is "
-        "wrong and how to fix it. The stage is not moved, and nothing is recorded.\v"
+        "for some seconds, and prints for each item that a test needs whether it is ready, or what "
+        "is wrong and how to fix it. The stage is not moved, and nothing is recorded.\v"
         "The checks are those of `wirebench record`. With a specimen file, the markers on the "
-        "bench "
-        "are compared with it, and a picture shows both.\n\n"
+        "bench are compared with it, and a picture shows both.\n\n"
         "--scan listens at every free serial port with a USB adapter, queries it for a GRBL or a "
         "Tic, searches NatNet servers on all network interfaces, and writes a first rig file; with "
         "addresses, only at these. It moves nothing and overwrites nothing.\n\n"

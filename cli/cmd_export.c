@@ -23,12 +23,11 @@
 static const struct argp_option option_table[] = {
     {"to", KEY_TO, "KIND", 0,
      "From a wire or properties file, write a card for another program; see `wirebench export --to "
-     "KIND --help`",
-     0},
-    {"output", 'o', "DIR|FILE.h5", 0, "Folder for CSV files, or HDF5 file to write", 0},
+     "KIND --help`"},
+    {"output", 'o', "DIR|FILE.h5", 0, "Folder for CSV files, or HDF5 file to write"},
     {"force", WB_KEY_FORCE, NULL, 0,
-     "Write into a folder that contains files already, or overwrite the file", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+     "Write into a folder that contains files already, or overwrite the file"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

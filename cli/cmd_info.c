@@ -27,12 +27,12 @@ enum {
 };
 
 static const struct argp_option option_table[] = {
-    {"figure", KEY_FIGURE, "FILE", 0, "Draw the section of a bundle: .svg, .png or .pdf", 0},
-    {"mesh", KEY_MESH, "NAME", 0, "Draw the lines of this mesh (that of the run)", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the figure", 0},
+    {"figure", KEY_FIGURE, "FILE", 0, "Draw the section of a bundle: .svg, .png or .pdf"},
+    {"mesh", KEY_MESH, "NAME", 0, "Draw the lines of this mesh (that of the run)"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the figure"},
     {"schema", KEY_SCHEMA, "KIND", 0,
-     "Print the JSON Schema of a kind of file: dataset, report, manifest or properties", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+     "Print the JSON Schema of a kind of file: dataset, report, manifest or properties"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

@@ -8,9 +8,9 @@
 #define WB_LOG_DOMAIN "quicklook"
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Folder to write", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the folder", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {"output", 'o', "DIR", 0, "Folder to write"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the folder"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

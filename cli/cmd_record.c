@@ -44,30 +44,27 @@ enum {
 
 static const struct argp_option argp_options[] = {
     {"specimen", WB_KEY_TEXT(options, request.specimen_path), "SPECIMEN.yaml", 0,
-     "The piece of wire on the bench", 0},
+     "The piece of wire on the bench"},
     {"series", WB_KEY_TEXT(options, series), "SERIES.yaml", 0,
-     "Test several specimens one after another, as described in this file", 0},
+     "Test several specimens one after another, as described in this file"},
     {"output", 'o', "REC.wbr", 0,
-     "The recording to write; it must not exist. For a series: the folder of its recordings", 0},
+     "The recording to write; it must not exist. For a series: the folder of its recordings"},
     {"operator", WB_KEY_TEXT(options, request.operator_name), "NAME", 0,
-     "Name of the operator, stored in the recording", 0},
-    {"notes", WB_KEY_TEXT(options, request.notes), "TEXT", 0, "Notes, stored in the recording", 0},
+     "Name of the operator, stored in the recording"},
+    {"notes", WB_KEY_TEXT(options, request.notes), "TEXT", 0, "Notes, stored in the recording"},
     {"live", WB_KEY_FLAG(options, views.live), NULL, 0,
-     "Show the test full-screen in the terminal: curve, wire, large numbers, instruments", 0},
+     "Show the test full-screen in the terminal: curve, wire, large numbers, instruments"},
     {"serve", OPTION_SERVE, "PORT", 0,
-     "Show the test as a web page at http://127.0.0.1:PORT/; 0 selects a free port", 0},
+     "Show the test as a web page at http://127.0.0.1:PORT/; 0 selects a free port"},
     {"figure", OPTION_FIGURE, "FILE", 0,
-     "At the end, draw force over deflection as SVG, PNG or PDF; the file must not exist", 0},
+     "At the end, draw force over deflection as SVG, PNG or PDF; the file must not exist"},
     {"virtual", WB_KEY_FLAG(options, is_virtual), NULL, 0,
      "Test on a virtual bench like that of RIG.yaml, in virtual time: a whole test takes one or "
-     "two "
-     "seconds and needs no instruments",
-     0},
+     "two seconds and needs no instruments"},
     {"start", OPTION_START, "DATE", 0,
      "With --virtual: the date stored in the recording, 2026-11-25 or 2026-11-25T14:03:00Z (the "
-     "real date)",
-     0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print the outcome as JSON", 0},
+     "real date)"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print the outcome as JSON"},
     {0},
 };
 
@@ -155,9 +152,8 @@ static const struct argp argp = {
         "stage ready), takes the tare, and moves the clamp down and back, N times.\v"
         "Mount the specimen with the strand slack: the test starts at the current position of the "
         "stage. Every limit of the rig file (force, overload, travel, a silent instrument, an "
-        "alarm "
-        "of the stage) stops the stage; the specimen then stays loaded until 'wirebench stage "
-        "RIG.yaml release' frees it.\n\n"
+        "alarm of the stage) stops the stage; the specimen then stays loaded until 'wirebench "
+        "stage RIG.yaml release' frees it.\n\n"
         "Keys during the test: m marks the moment in the recording, h holds the test, r resumes "
         "it, q stops it; Ctrl-C stops it, too. The stage is stopped before the recording is "
         "closed.\n\n"

@@ -10,8 +10,8 @@
 #define WB_LOG_DOMAIN "recover"
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "NEW.wbr", 0, "Recording to write", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+    {"output", 'o', "NEW.wbr", 0, "Recording to write"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

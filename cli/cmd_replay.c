@@ -16,7 +16,7 @@
 #define WB_LOG_DOMAIN "replay"
 
 static const struct argp_option other_options[] = {
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object at the end", 0},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object at the end"},
     {0},
 };
 

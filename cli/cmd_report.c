@@ -24,21 +24,19 @@ struct options {
 #define KEY_THREADS WB_KEY_OWN
 
 static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Folder to write", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Replace the report in the folder", 0},
-    {"threads", KEY_THREADS, "N", 0, "Threads to compute on, 1 to 16 (as many as cores, 4 at most)",
-     0},
+    {"output", 'o', "DIR", 0, "Folder to write"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Replace the report in the folder"},
+    {"threads", KEY_THREADS, "N", 0,
+     "Threads to compute on, 1 to 16 (as many as cores, 4 at most)"},
     {"sign", WB_KEY_TEXT(options, key), "KEY", 0,
      "Also write manifest.json, the SHA-256 sums of the report and its inputs, and its OpenPGP "
-     "signature with this gpg key",
-     0},
+     "signature with this gpg key"},
     {"check", WB_KEY_TEXT(options, check), "DIR", 0,
      "Check the signed report in this folder: signature, files, and the results computed again; "
-     "name the campaign file only where it is not found",
-     0},
+     "name the campaign file only where it is not found"},
     {"stale", WB_KEY_FLAG(options, lists), NULL, 0,
-     "Make no report, but list the datasets that are missing or outdated, and why", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print all numbers, or the list, as one JSON object", 0},
+     "Make no report, but list the datasets that are missing or outdated, and why"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print all numbers, or the list, as one JSON object"},
     {0},
 };
 

@@ -59,11 +59,10 @@ static const struct wb_settings_source sources[] = {
 
 static const struct argp_option other_options[] = {
     {"output", 'o', "DATASET", 0,
-     "Write a dataset folder, and a figure of force over deflection to DATASET.svg", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the dataset, its figure, and the files of --vtk",
-     0},
-    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Draw no figure", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object instead of CSV", 0},
+     "Write a dataset folder, and a figure of force over deflection to DATASET.svg"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the dataset, its figure, and the files of --vtk"},
+    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Draw no figure"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object instead of CSV"},
     {0},
 };
 

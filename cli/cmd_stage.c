@@ -18,9 +18,9 @@
 #define WB_LOG_DOMAIN "stage"
 
 static const struct argp_option other_options[] = {
-    {"output", 'o', "CERTIFICATE.pdf", 0, "Write the series of check as a page", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Replace that file", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print the outcome as JSON", 0},
+    {"output", 'o', "CERTIFICATE.pdf", 0, "Write the series of check as a page"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Replace that file"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print the outcome as JSON"},
     {0},
 };
 

@@ -35,11 +35,10 @@ struct options {
 static const struct argp_option other_options[] = {
     {"output", 'o', "DIR", 0,
      "Folder for forces, errors and scores of each group (CSV), and a figure of each group of "
-     "cantilevers under a tip force (SVG)",
-     0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the output folder", 0},
-    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Draw no figures", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+     "cantilevers under a tip force (SVG)"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the output folder"},
+    {"no-figure", WB_KEY_NO_FIGURE, NULL, 0, "Draw no figures"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 
@@ -51,8 +50,7 @@ static const struct argp argp = {
         "Predicts tests from calibrated properties and scores each part separately: the first "
         "loading (eqs. 18 and 19, beside a linear elastic prediction), the unloading, the residual "
         "deflection, the energy dissipated in later cycles, and the shapes. Datasets are grouped "
-        "by "
-        "wire, length and loading, those of three-point bending by bench, and each group is "
+        "by wire, length and loading, those of three-point bending by bench, and each group is "
         "averaged.\v"
         "Errors are relative to F_max, the largest force of the measured average, or, for tests "
         "with a follower force, to the largest deflection. Exit code 3: a prediction is incomplete "

@@ -19,10 +19,9 @@ struct options {
 
 static const struct argp_option other_options[] = {
     /* find_kind() reads it, because the other options depend on it. */
-    {"to", WB_KEY_IGNORED, "KIND", 0, "Kind of card: calculix, abaqus, mujoco, table, table-csv",
-     0},
-    {"output", 'o', "FILE", 0, "Write the card here; by default it is printed", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the file", 0},
+    {"to", WB_KEY_IGNORED, "KIND", 0, "Kind of card: calculix, abaqus, mujoco, table, table-csv"},
+    {"output", 'o', "FILE", 0, "Write the card here; by default it is printed"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the file"},
     {0},
 };
 

@@ -27,19 +27,18 @@ struct options {
 };
 
 static const struct argp_option argp_options[] = {
-    {"specimen", WB_KEY_TEXT(options, specimen), "SPECIMEN.yaml", 0, "The specimen", 0},
+    {"specimen", WB_KEY_TEXT(options, specimen), "SPECIMEN.yaml", 0, "The specimen"},
     {"machine", WB_KEY_TEXT(options, machine), "MACHINE.yaml", 0,
-     "The machine and the kind of test: span, radii, ...", 0},
-    {"output", 'o', "DATASET", 0, "Folder to write", 0},
+     "The machine and the kind of test: span, radii, ..."},
+    {"output", 'o', "DATASET", 0, "Folder to write"},
     {"columns", WB_KEY_TEXT(options, columns), "LIST", 0,
      "The columns, and their units where the header has none: time=1,force=2:mN,travel=3 (from the "
-     "header)",
-     0},
+     "header)"},
     {"delimiter", KEY_DELIMITER, "NAME", 0,
-     "Between the columns: tab, semicolon, comma, bar or blanks (detected)", 0},
-    {"decimal", KEY_DECIMAL, "NAME", 0, "Decimal sign: point or comma (detected)", 0},
-    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the folder", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+     "Between the columns: tab, semicolon, comma, bar or blanks (detected)"},
+    {"decimal", KEY_DECIMAL, "NAME", 0, "Decimal sign: point or comma (detected)"},
+    {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the files of the folder"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 

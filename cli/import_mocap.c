@@ -21,19 +21,19 @@ struct options {
 };
 
 static const struct argp_option other_options[] = {
-    {"output", 'o', "REC.wbr", 0, "Recording to write", 0},
-    {"specimen", WB_KEY_TEXT(options, request.specimen_path), "S.yaml", 0, "The specimen", 0},
+    {"output", 'o', "REC.wbr", 0, "Recording to write"},
+    {"specimen", WB_KEY_TEXT(options, request.specimen_path), "S.yaml", 0, "The specimen"},
     {"rig", WB_KEY_TEXT(options, request.rig_path), "R.yaml", 0,
-     "The bench: load cell, vertical axis of the cameras, strand", 0},
-    {"force", WB_KEY_TEXT(options, request.force_path), "FILE", 0, "Table of time and force", 0},
+     "The bench: load cell, vertical axis of the cameras, strand"},
+    {"force", WB_KEY_TEXT(options, request.force_path), "FILE", 0, "Table of time and force"},
     {"columns", WB_KEY_TEXT(options, request.columns), "LIST", 0,
-     "Columns of that table and their units: time=1:ms,force=2:mN (from the header)", 0},
+     "Columns of that table and their units: time=1:ms,force=2:mN (from the header)"},
     {"channel", WB_KEY_TEXT(options, request.channel), "NAME[:UNIT]", 0,
-     "Analogue channel of a C3D with the force (the only one in a unit of force)", 0},
+     "Analogue channel of a C3D with the force (the only one in a unit of force)"},
     {"sync", KEY_SYNC, "EVENT", 0,
-     "Event that synchronises the two clocks: tap or reversal (the better of both)", 0},
-    {"notes", WB_KEY_TEXT(options, request.notes), "TEXT", 0, "Notes, stored in the recording", 0},
-    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object", 0},
+     "Event that synchronises the two clocks: tap or reversal (the better of both)"},
+    {"notes", WB_KEY_TEXT(options, request.notes), "TEXT", 0, "Notes, stored in the recording"},
+    {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
 
