@@ -138,10 +138,10 @@ static void print_finding(const struct options *o, const struct result *results,
     if (is_one_wire) {
         char file[WB_PATH];
         snprintf(file, sizeof file, "%s.yaml", info->wire);
-        wb_text_append(&finding.next, "wirebench calibrate ");
-        wb_text_append_quoted(&finding.next, o->common.output);
-        wb_text_append(&finding.next, "%s -o ", o->common.n > 1 ? "/*" : "");
-        wb_text_append_quoted(&finding.next, file);
+        wb_finding_append_command(&finding.next,
+                                  o->common.n > 1 ? "wirebench calibrate %s/* -o %s"
+                                                  : "wirebench calibrate %s -o %s",
+                                  o->common.output, file);
     } else {
         wb_text_append(&finding.next,
                        "wirebench calibrate, separately for the datasets of each wire");

@@ -280,13 +280,12 @@ static void append_next(struct wb_text *text, const struct wb_bend_test_result *
                        "another file");
         return;
     }
-    wb_text_append(text, test->is_usable ? "wirebench align " : "wirebench verify ");
-    wb_text_append_quoted(text, output);
-    if (!test->is_usable)
+    if (!test->is_usable) {
+        wb_finding_append_command(text, "wirebench verify %s", output);
         return;
+    }
     snprintf(dataset, sizeof dataset, "%.*s", (int)(strlen(output) - strlen(".wbr")), output);
-    wb_text_append(text, " -o ");
-    wb_text_append_quoted(text, dataset);
+    wb_finding_append_command(text, "wirebench align %s -o %s", output, dataset);
 }
 
 static void print_result(const struct wb_bend_test_result *result, const char *output,

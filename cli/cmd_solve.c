@@ -333,19 +333,6 @@ static void append_found(struct wb_text *text, const struct wb_dataset *dataset)
                    wb_print_number(deflection / WB_MM, a), wb_print_number(force / WB_MN, b));
 }
 
-static void append_next(struct wb_text *text, const struct options *o)
-{
-    if (o->settings.vtk) {
-        wb_text_append(text, "open the .pvd file in ");
-        wb_text_append_quoted(text, o->settings.vtk);
-        wb_text_append(text, " with ParaView");
-        return;
-    }
-    wb_text_append(text, "wirebench export ");
-    wb_text_append_quoted(text, o->common.output);
-    wb_text_append(text, " -o FILE.h5, for other programs");
-}
-
 /* Reads the dataset that was just written, so that figure and finding show what is on disk. */
 static enum wb_status print_finding(const struct options *o, bool is_complete)
 {
@@ -360,7 +347,13 @@ static enum wb_status print_finding(const struct options *o, bool is_complete)
         append_found(&finding.found, &dataset);
         wb_text_append(&finding.trust, "%s; computed, not compared with a measurement",
                        is_complete ? "complete" : "in part: the curve ends early, see the warning");
-        append_next(&finding.next, o);
+        if (o->settings.vtk)
+            wb_finding_append_command(&finding.next, "open the .pvd file in %s with ParaView",
+                                      o->settings.vtk);
+        else
+            wb_finding_append_command(&finding.next,
+                                      "wirebench export %s -o FILE.h5, for other programs",
+                                      o->common.output);
         wb_finding_print(&finding);
     }
     wb_dataset_release(&dataset);

@@ -447,13 +447,6 @@ static const char *next_of(enum wb_validate_verdict worst)
     return next[worst];
 }
 
-static void append_export(struct wb_text *text, const char *properties)
-{
-    wb_text_append(text, "wirebench export ");
-    wb_text_append_quoted(text, properties);
-    wb_text_append(text, " --to table -o CARD.json, for other programs");
-}
-
 static void print_finding(const struct options *o, const struct wb_properties *properties,
                           const struct groups *groups, const char *figure)
 {
@@ -495,7 +488,9 @@ static void print_finding(const struct options *o, const struct wb_properties *p
     else if (worst != WB_VALIDATE_PREDICTED)
         wb_text_append(&finding.next, "%s", next_of(worst));
     else
-        append_export(&finding.next, o->common.input);
+        wb_finding_append_command(&finding.next,
+                                  "wirebench export %s --to table -o CARD.json, for other programs",
+                                  o->common.input);
     wb_finding_print(&finding);
 }
 

@@ -12,6 +12,7 @@
 #include "base/config.h"
 #include "base/file.h"
 #include "cli/command.h"
+#include "cli/finding.h"
 #include "daq/recording/index.h"
 #include "daq/take/take_reader.h"
 
@@ -101,12 +102,7 @@ const char *wb_file_kind_name(enum wb_file_kind kind)
 
 void wb_file_kind_append_next(struct wb_text *text, enum wb_file_kind kind, const char *path)
 {
-    const char *at = rows[kind].next;
-    for (const char *place; (place = strstr(at, "%s")) != NULL; at = place + 2) {
-        wb_text_append_bytes(text, at, (size_t)(place - at));
-        wb_text_append_quoted(text, path);
-    }
-    wb_text_append(text, "%s", at);
+    wb_finding_append_command(text, rows[kind].next, path, path);
 }
 
 /* --- folders --- */

@@ -1,6 +1,7 @@
 #include "cli/finding.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -100,20 +101,29 @@ const char *wb_finding_properties_source(const struct wb_properties *properties)
                                        : "measured";
 }
 
+void wb_finding_append_command(struct wb_text *text, const char *format, ...)
+{
+    va_list words;
+    va_start(words, format);
+    for (const char *place; (place = strstr(format, "%s")) != NULL; format = place + 2) {
+        wb_text_append_bytes(text, format, (size_t)(place - format));
+        wb_text_append_quoted(text, va_arg(words, const char *));
+    }
+    va_end(words);
+    wb_text_append(text, "%s", format);
+}
+
 void wb_finding_append_validate(struct wb_text *text, const char *output, const char *wire,
                                 const char *another)
 {
     char file[WB_PATH];
     if (output) {
-        wb_text_append(text, "wirebench validate ");
-        wb_text_append_quoted(text, output);
-        wb_text_append(text, " DATASET..., with tests of another %s", another);
+        wb_finding_append_command(text, "wirebench validate %s DATASET..., ", output);
+        wb_text_append(text, "with tests of another %s", another);
         return;
     }
     snprintf(file, sizeof file, "%s.yaml", wire);
-    wb_text_append(text, "run the same command with -o ");
-    wb_text_append_quoted(text, file);
-    wb_text_append(text, " to keep the properties");
+    wb_finding_append_command(text, "run the same command with -o %s to keep the properties", file);
 }
 
 const char *wb_finding_figure_path(char path[WB_PATH], const char *output)

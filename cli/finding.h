@@ -33,6 +33,9 @@ const char *wb_finding_source(const struct wb_test_info *info);
 
 const char *wb_finding_properties_source(const struct wb_properties *properties);
 
+/* Appends a command line: `format` with a word, quoted for the shell, in place of each "%s". */
+void wb_finding_append_command(struct wb_text *text, const char *format, ...);
+
 /* Appends the next command after a calibration: `wirebench validate OUTPUT DATASET...` with tests
  * of another length or span (`another`), or, where no properties were written (NULL), how to keep
  * them.

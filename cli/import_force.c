@@ -170,15 +170,14 @@ static void append_trust(struct wb_text *text, const struct wb_dataset *dataset,
 
 static void append_next(struct wb_text *text, const struct wb_dataset *dataset, const char *folder)
 {
-    const bool is_tensile = dataset->info.kind == WB_TEST_TENSILE;
     char file[WB_PATH];
-    wb_text_append(text, "wirebench calibrate %s", is_tensile ? "--tensile " : "");
-    wb_text_append_quoted(text, folder);
-    if (is_tensile)
-        return; /* a material file needs a density, too */
+    if (dataset->info.kind == WB_TEST_TENSILE) {
+        /* Without -o: a material file needs a density, too. */
+        wb_finding_append_command(text, "wirebench calibrate --tensile %s", folder);
+        return;
+    }
     snprintf(file, sizeof file, "%s.yaml", dataset->info.wire);
-    wb_text_append(text, " -o ");
-    wb_text_append_quoted(text, file);
+    wb_finding_append_command(text, "wirebench calibrate %s -o %s", folder, file);
 }
 
 static void print_finding(const struct wb_dataset *dataset,

@@ -174,10 +174,7 @@ static void print_finding(const struct wb_mocap_import *r, const char *output)
     if (r->has_force) {
         snprintf(dataset, sizeof dataset, "%.*s",
                  (int)strlen(output) - (wb_command_ends_in(output, ".wbr") ? 4 : 0), output);
-        wb_text_append(&finding.next, "wirebench align ");
-        wb_text_append_quoted(&finding.next, output);
-        wb_text_append(&finding.next, " -o ");
-        wb_text_append_quoted(&finding.next, dataset);
+        wb_finding_append_command(&finding.next, "wirebench align %s -o %s", output, dataset);
     } else {
         wb_text_append(&finding.next, "import the take again with --force FILE");
     }

@@ -32,11 +32,9 @@ static enum wb_status print_properties(const char *path, struct wb_json *root)
 static void append_next_of(struct wb_text *next, const struct wb_test_info *info, const char *path)
 {
     if (info->kind == WB_TEST_TENSILE)
-        wb_text_append(next, "wirebench calibrate --tensile ");
+        wb_finding_append_command(next, "wirebench calibrate --tensile %s", path);
     else if (info->is_follower)
-        wb_text_append(next, "wirebench validate PROPERTIES.yaml ");
-    if (next->length > 0)
-        wb_text_append_quoted(next, path);
+        wb_finding_append_command(next, "wirebench validate PROPERTIES.yaml %s", path);
 }
 
 static enum wb_status print_dataset(const char *path, struct wb_json *root, struct wb_text *next)

@@ -528,13 +528,10 @@ static void append_next(struct wb_text *text, const struct run *run, bool is_com
         char path[WB_PATH];
         if (test->excluded.is_excluded || wb_file_join(path, run->folder, test->name) != WB_OK)
             continue;
-        wb_text_append(text, " ");
-        wb_text_append_quoted(text, path);
+        wb_finding_append_command(text, " %s", path);
     }
-    if (wb_file_join(folder, run->folder, "datasets") != WB_OK)
-        return;
-    wb_text_append(text, " -o ");
-    wb_text_append_quoted(text, folder);
+    if (wb_file_join(folder, run->folder, "datasets") == WB_OK)
+        wb_finding_append_command(text, " -o %s", folder);
 }
 
 static void print_finding(const struct run *run, int n_done, bool is_complete, bool has_figure)
