@@ -93,6 +93,19 @@ void wb_bench_options_default(struct wb_virtual_options *options)
     wb_setting_fill(&wb_bench_options_virtual, options);
 }
 
+const char *wb_bench_options_end_name(enum wb_sequence_end end)
+{
+    static const char *const names[] = {
+        [WB_SEQUENCE_RUNNING] = "running",
+        [WB_SEQUENCE_DONE] = "done",
+        [WB_SEQUENCE_LIMIT] = "limit",
+        [WB_SEQUENCE_INTERRUPTED] = "interrupted",
+        [WB_SEQUENCE_STILL_LOADED] = "still_loaded",
+        [WB_SEQUENCE_FAILED] = "failed",
+    };
+    return names[end];
+}
+
 void wb_bench_options_complete(struct wb_virtual_options *options)
 {
     options->bench.seed = options->seed < 0 ? WB_BENCH_SEED_OF_SAMPLE : (uint64_t)options->seed;

@@ -7,6 +7,7 @@
 
 #include "base/setting.h"
 #include "cli/command.h"
+#include "daq/acquire/sequence.h"
 #include "daq/acquire/stage_job.h"
 #include "fixtures/virtual/bench.h"
 
@@ -50,5 +51,8 @@ extern const struct wb_setting_table wb_bench_options_stage, wb_bench_options_ri
  * after parsing: it sets seed and protocol version in `bench`. */
 void wb_bench_options_default(struct wb_virtual_options *options);
 void wb_bench_options_complete(struct wb_virtual_options *options);
+
+/* "done", "still_loaded": how a test or job ended, as in the JSON of these commands. */
+const char *wb_bench_options_end_name(enum wb_sequence_end end);
 
 #endif

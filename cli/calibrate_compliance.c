@@ -1,7 +1,5 @@
-#include "cli/calibrate_compliance.h"
-
+/* wirebench calibrate --compliance: compliance of a machine, from tests of a stiff bar. */
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -9,6 +7,7 @@
 #include "base/circle.h"
 #include "base/json.h"
 #include "base/units.h"
+#include "cli/calibrate.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
 #include "cli/finding.h"
@@ -154,13 +153,9 @@ int wb_calibrate_compliance(int argc, char **argv)
 {
     struct options options = {.common = {.noun = "at least one dataset", .least = 1}};
     struct wb_machine_compliance result;
-    static const struct wb_settings_source source = {.tables = &wb_machine_compliance_table,
-                                                     .n_tables = 1,
-                                                     .offset = offsetof(struct options, settings)};
-    static const struct wb_settings_command command = {
-        .argp = &argp, .sources = &source, .n_sources = 1, .place = 1};
     wb_setting_fill(&wb_machine_compliance_table, &options.settings);
-    wb_settings_parse(&command, argc, argv, &options);
+    wb_settings_parse_table(&argp, &wb_machine_compliance_table, &options.settings, 1, argc, argv,
+                            &options);
     enum wb_status status = wb_datasets_read(&options.datasets, options.common.inputs,
                                              options.common.n, WB_TEST_BIT(WB_TEST_THREE_POINT));
     if (status == WB_OK)

@@ -1,5 +1,4 @@
-#include "cli/calibrate_constituents.h"
-
+/* wirebench calibrate --constituents: a wire computed from its constituents. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +8,7 @@
 #include "base/circle.h"
 #include "base/number.h"
 #include "base/units.h"
+#include "cli/calibrate.h"
 #include "cli/command.h"
 #include "cli/file_kind.h"
 #include "cli/finding.h"

@@ -1,5 +1,4 @@
-#include "cli/calibrate_tensile.h"
-
+/* wirebench calibrate --tensile: tensile tests of a wire's constituents. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,6 +8,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/units.h"
+#include "cli/calibrate.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
 #include "cli/finding.h"

@@ -12,10 +12,8 @@
 #include "base/interrupt.h"
 #include "base/progress.h"
 #include "base/units.h"
-#include "cli/calibrate_compliance.h"
-#include "cli/calibrate_constituents.h"
+#include "cli/calibrate.h"
 #include "cli/calibrate_cycle.h"
-#include "cli/calibrate_tensile.h"
 #include "cli/calibrate_three_point.h"
 #include "cli/command.h"
 #include "cli/complete.h"
@@ -67,18 +65,18 @@ static const struct argp_option other_options[] = {
 };
 
 static const struct wb_settings_source sources[] = {
-    {.tables = wb_cycle_calibrate_tables,
-     .n_tables = WB_CYCLE_CALIBRATE_TABLES,
-     .offset = offsetof(struct options, cycle.settings),
-     .title = "Settings of --method cycle:"},
-    {.tables = &wb_calibrate_table,
-     .n_tables = 1,
-     .offset = offsetof(struct options, settings),
-     .title = "Settings of --method paper:"},
-    {.tables = wb_three_point_calibrate_tables,
-     .n_tables = WB_THREE_POINT_CALIBRATE_TABLES,
-     .offset = offsetof(struct options, three_point),
-     .title = "Settings of datasets of three-point bending:"},
+    [WB_METHOD_CYCLE] = {.tables = wb_cycle_calibrate_tables,
+                         .n_tables = WB_CYCLE_CALIBRATE_TABLES,
+                         .offset = offsetof(struct options, cycle.settings),
+                         .title = "Settings of --method cycle:"},
+    [WB_METHOD_PAPER] = {.tables = &wb_calibrate_table,
+                         .n_tables = 1,
+                         .offset = offsetof(struct options, settings),
+                         .title = "Settings of --method paper:"},
+    [WB_METHOD_THREE_POINT] = {.tables = wb_three_point_calibrate_tables,
+                               .n_tables = WB_THREE_POINT_CALIBRATE_TABLES,
+                               .offset = offsetof(struct options, three_point),
+                               .title = "Settings of datasets of three-point bending:"},
 };
 
 static error_t parse(int key, char *argument, struct argp_state *state)
@@ -97,23 +95,11 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     return 0;
 }
 
-static void note_option(void *input, const struct wb_setting *row)
+static void note_option(void *input, const struct wb_setting *row, size_t method)
 {
     struct options *const o = input;
-    const bool is_papers =
-        row >= wb_calibrate_table.rows && row < wb_calibrate_table.rows + wb_calibrate_table.n;
-    bool is_three_point = false;
-    for (int t = 0; t < WB_THREE_POINT_CALIBRATE_TABLES; t++) {
-        const struct wb_setting_table *const table = &wb_three_point_calibrate_tables[t];
-        is_three_point = is_three_point || (row >= table->rows && row < table->rows + table->n);
-    }
     /* --threads applies to all methods; the paper's uses one. */
-    if (strcmp(row->option, "threads") == 0)
-        return;
-    const enum wb_method method = is_three_point ? WB_METHOD_THREE_POINT
-                                  : is_papers    ? WB_METHOD_PAPER
-                                                 : WB_METHOD_CYCLE;
-    if (!o->of[method])
+    if (strcmp(row->option, "threads") != 0 && !o->of[method])
         o->of[method] = row;
 }
 

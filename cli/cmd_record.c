@@ -93,14 +93,6 @@ static void check_virtual(struct argp_state *state, const struct options *option
                           "second; for a virtual bench in real time use 'wirebench rig'");
 }
 
-static void note_option(void *input, const struct wb_setting *row)
-{
-    struct options *const options = input;
-    for (size_t i = 0; i < wb_bench_options_virtual.n; i++)
-        if (row == &wb_bench_options_virtual.rows[i])
-            options->of_virtual = row->option;
-}
-
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const options = state->input;
@@ -169,30 +161,24 @@ static const struct wb_settings_source sources[] = {
      .title = "With --virtual:"},
 };
 
+static void note_option(void *input, const struct wb_setting *row, size_t source)
+{
+    struct options *const options = input;
+    if (sources[source].tables == &wb_bench_options_virtual)
+        options->of_virtual = row->option;
+}
+
 static const struct wb_settings_command command = {.argp = &argp,
                                                    .sources = sources,
                                                    .n_sources = WB_COUNT(sources),
                                                    .place = 1,
                                                    .note = note_option};
 
-static const char *end_name(enum wb_sequence_end end)
-{
-    static const char *const names[] = {
-        [WB_SEQUENCE_RUNNING] = "running",
-        [WB_SEQUENCE_DONE] = "done",
-        [WB_SEQUENCE_LIMIT] = "limit",
-        [WB_SEQUENCE_INTERRUPTED] = "interrupted",
-        [WB_SEQUENCE_STILL_LOADED] = "still_loaded",
-        [WB_SEQUENCE_FAILED] = "failed",
-    };
-    return names[end];
-}
-
 static void print_json(const struct wb_bend_test_result *result, const char *output)
 {
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "recording", result->recorded ? output : NULL);
-    wb_json_set_text(root, "end", end_name(result->end));
+    wb_json_set_text(root, "end", wb_bench_options_end_name(result->end));
     wb_json_set_text(root, "reason", result->text);
     wb_json_set_boolean(root, "virtual_rig", result->is_virtual);
     wb_json_set_integer(root, "cycles_done", result->cycles_done);

@@ -127,10 +127,8 @@ static void show_job(const struct wb_stage_job *job)
 
 static void print_job_json(const struct wb_rig *rig, const struct wb_stage_job_result *result)
 {
-    static const char *const ends[] = {"running",     "done",         "limit",
-                                       "interrupted", "still_loaded", "failed"};
     struct wb_json *const root = wb_json_create();
-    wb_json_set_text(root, "end", ends[result->end]);
+    wb_json_set_text(root, "end", wb_bench_options_end_name(result->end));
     wb_json_set_text(root, "reason", result->text);
     wb_json_set_boolean(root, "virtual_rig", rig->is_virtual);
     wb_json_set_boolean(root, "standing", result->standing);

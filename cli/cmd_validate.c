@@ -29,7 +29,7 @@ struct options {
     struct wb_datasets datasets;
     struct wb_calibrate_settings settings;
     struct wb_three_point_calibrate_settings three_point;
-    const struct wb_setting *of[2]; /* the first option of either kind of test that was given */
+    const struct wb_setting *of[2]; /* the first option of each of the `sources` that was given */
 };
 
 static const struct argp_option other_options[] = {
@@ -68,13 +68,11 @@ static const struct wb_settings_source sources[] = {
      .title = "Settings of datasets of three-point bending, as of `wirebench calibrate`:"},
 };
 
-static void note_option(void *input, const struct wb_setting *row)
+static void note_option(void *input, const struct wb_setting *row, size_t source)
 {
     struct options *const o = input;
-    const bool is_three_point =
-        !(row >= wb_calibrate_table.rows && row < wb_calibrate_table.rows + wb_calibrate_table.n);
-    if (!o->of[is_three_point])
-        o->of[is_three_point] = row;
+    if (!o->of[source])
+        o->of[source] = row;
 }
 
 /* Options for a kind of test that is not among the datasets would be ignored silently. */

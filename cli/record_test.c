@@ -29,14 +29,11 @@ static void fill_fields(const struct wb_bend_test_status *status, struct fields 
     const struct wb_acquisition_latest *const latest = status->latest;
     const struct wb_acquisition_stream_state *const stream = latest->stream;
     const int seconds = (int)status->elapsed;
-    *f = (struct fields){status->is_virtual ? "virtual rig: " : "",
-                         "",
-                         "-- mN",
-                         "-- mm",
-                         "-- mm",
-                         "no markers",
-                         "",
-                         ""};
+    *f = (struct fields){.origin = status->is_virtual ? "virtual rig: " : "",
+                         .force = "-- mN",
+                         .travel = "-- mm",
+                         .deflection = "-- mm",
+                         .markers = "no markers"};
     if (status->cycle > 0)
         snprintf(f->phase, sizeof f->phase, "%s %d/%d %d:%02d", status->phase, status->cycle,
                  status->cycles, seconds / 60, seconds % 60);

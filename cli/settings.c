@@ -16,6 +16,7 @@ enum {
 /* One row as an option. */
 struct entry {
     const struct wb_setting *row;
+    const struct wb_settings_source *source;
     size_t offset;    /* of the row's struct in the input */
     unsigned applies; /* bits of places; 0: all */
 };
@@ -61,6 +62,7 @@ static void add_entry(struct line *line, const struct wb_settings_source *source
     struct wb_text help = {0};
     const struct entry own = {
         .row = row,
+        .source = source,
         .offset = source->offset + table->offset,
         .applies = row->applies ? row->applies : source->applies,
     };
@@ -170,7 +172,8 @@ static void take(struct line *line, struct argp_state *state, const struct entry
     if (!wb_setting_parse(entry->row, argument, (char *)line->input + entry->offset, problem))
         argp_error(state, "--%s: %s", entry->row->option, problem);
     else if (line->command->note)
-        line->command->note(line->input, entry->row);
+        line->command->note(line->input, entry->row,
+                            (size_t)(entry->source - line->command->sources));
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state)

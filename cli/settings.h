@@ -29,8 +29,8 @@ struct wb_settings_command {
     /* Names of the places by bit, NULL-terminated, for the messages about options of other places.
      * NULL: options of other places are unknown options. */
     const char *const *places;
-    /* Called for each option of a row that was given; may be NULL. */
-    void (*note)(void *input, const struct wb_setting *row);
+    /* Called for each option of a row that was given, with the index of its source; may be NULL. */
+    void (*note)(void *input, const struct wb_setting *row, size_t source);
 };
 
 /* Parses as wb_command_parse() does. */
