@@ -188,74 +188,65 @@ static void parse_options(int argc, char **argv, struct options *options)
 
 /* --- the curve --- */
 
-/* The columns of a row of three-point bending, besides cycle and phase. */
-struct bending_column {
+/* A column of the curve, besides cycle and phase. */
+struct column {
     const char *name;
     double value;
 };
 
 enum {
-    BENDING_COLUMNS = 12
+    MOST_COLUMNS = 12
 };
 
-static void bending_columns(const struct wb_three_point_bending_point *p,
-                            struct bending_column columns[BENDING_COLUMNS])
+/* Returns the number of columns. */
+static size_t columns_of(const struct wb_solve_row *row, struct column columns[MOST_COLUMNS])
 {
-    const struct bending_column all[BENDING_COLUMNS] = {
-        {"deflection_mm", p->travel / WB_MM},
-        {"force_N", p->force},
-        {"nose_mm", p->deflection / WB_MM},
-        {"middle_mm", p->middle / WB_MM},
-        {"contact_angle_rad", p->contact_angle},
-        {"draw_in_mm", p->draw_in / WB_MM},
-        {"wrapped_rad", p->wrapped},
-        {"friction_N", p->tension},
-        {"middle_curvature_1_m", p->middle_curvature},
-        {"work_J", p->work},
-        {"internal_work_J", p->internal_work},
-        {"friction_work_J", p->friction_work},
+    const struct wb_three_point_bending_point *const p = row->bending;
+    if (p) {
+        const struct column all[] = {
+            {"deflection_mm", p->travel / WB_MM},
+            {"force_N", p->force},
+            {"nose_mm", p->deflection / WB_MM},
+            {"middle_mm", p->middle / WB_MM},
+            {"contact_angle_rad", p->contact_angle},
+            {"draw_in_mm", p->draw_in / WB_MM},
+            {"wrapped_rad", p->wrapped},
+            {"friction_N", p->tension},
+            {"middle_curvature_1_m", p->middle_curvature},
+            {"work_J", p->work},
+            {"internal_work_J", p->internal_work},
+            {"friction_work_J", p->friction_work},
+        };
+        memcpy(columns, all, sizeof all);
+        return WB_COUNT(all);
+    }
+    const struct column all[] = {
+        {"deflection_mm", row->deflection / WB_MM},
+        {"tension_N", row->tension},
+        {"force_N", row->force},
+        {"tip_x_mm", row->tip_x / WB_MM},
+        {"tip_angle_rad", row->tip_angle},
     };
     memcpy(columns, all, sizeof all);
+    return WB_COUNT(all);
 }
 
-static void print_bending_csv(const struct wb_solve *solve)
+/* The names of the columns first, also those of an empty curve. */
+static void print_csv(const struct wb_solve *solve)
 {
-    struct bending_column columns[BENDING_COLUMNS];
+    struct column columns[MOST_COLUMNS];
+    struct wb_solve_row row = {0};
     for (int i = -1; i < wb_solve_count(solve); i++) {
-        struct wb_solve_row row;
-        wb_solve_row(solve, i < 0 ? 0 : i, &row);
-        bending_columns(row.bending, columns);
+        if (wb_solve_count(solve) > 0)
+            wb_solve_row(solve, i < 0 ? 0 : i, &row);
+        const size_t n = columns_of(&row, columns);
         if (i < 0)
             printf("cycle,phase");
         else
             printf("%d,%s", row.cycle, wb_trial_phase_name(row.phase));
-        for (size_t k = 0; k < BENDING_COLUMNS; k++) {
+        for (size_t k = 0; k < n; k++) {
             char text[WB_NUMBER_TEXT];
             printf(",%s", i < 0 ? columns[k].name : wb_number_format(columns[k].value, text));
-        }
-        putchar('\n');
-    }
-}
-
-static void print_csv(const struct wb_solve *solve)
-{
-    struct wb_solve_row first;
-    if (wb_solve_count(solve) > 0)
-        wb_solve_row(solve, 0, &first);
-    if (wb_solve_count(solve) > 0 && first.bending) {
-        print_bending_csv(solve);
-        return;
-    }
-    puts("cycle,phase,deflection_mm,tension_N,force_N,tip_x_mm,tip_angle_rad");
-    for (int i = 0; i < wb_solve_count(solve); i++) {
-        struct wb_solve_row row;
-        wb_solve_row(solve, i, &row);
-        const double column[] = {row.deflection / WB_MM, row.tension, row.force, row.tip_x / WB_MM,
-                                 row.tip_angle};
-        printf("%d,%s", row.cycle, wb_trial_phase_name(row.phase));
-        for (size_t k = 0; k < WB_COUNT(column); k++) {
-            char text[WB_NUMBER_TEXT];
-            printf(",%s", wb_number_format(column[k], text));
         }
         putchar('\n');
     }
@@ -268,21 +259,13 @@ static void print_json(const struct wb_solve *solve)
     for (int i = 0; i < wb_solve_count(solve); i++) {
         struct wb_json *const object = wb_json_append_object(points);
         struct wb_solve_row row;
+        struct column columns[MOST_COLUMNS];
         wb_solve_row(solve, i, &row);
+        const size_t n = columns_of(&row, columns);
         wb_json_set_integer(object, "cycle", row.cycle);
         wb_json_set_text(object, "phase", wb_trial_phase_name(row.phase));
-        if (row.bending) {
-            struct bending_column columns[BENDING_COLUMNS];
-            bending_columns(row.bending, columns);
-            for (size_t k = 0; k < BENDING_COLUMNS; k++)
-                wb_json_set_number(object, columns[k].name, columns[k].value);
-            continue;
-        }
-        wb_json_set_number(object, "deflection_mm", row.deflection / WB_MM);
-        wb_json_set_number(object, "tension_N", row.tension);
-        wb_json_set_number(object, "force_N", row.force);
-        wb_json_set_number(object, "tip_x_mm", row.tip_x / WB_MM);
-        wb_json_set_number(object, "tip_angle_rad", row.tip_angle);
+        for (size_t k = 0; k < n; k++)
+            wb_json_set_number(object, columns[k].name, columns[k].value);
         if (row.is_spatial)
             wb_json_set_number(object, "tip_z_mm", row.tip_z / WB_MM);
         if (row.step)
