@@ -163,6 +163,5 @@ int wb_calibrate_compliance(int argc, char **argv)
                                             &options.settings, NULL);
     const int code = status == WB_OK ? deliver(&options, &result) : wb_command_exit(status);
     wb_datasets_release(&options.datasets);
-    wb_command_release(&options.common);
     return code;
 }

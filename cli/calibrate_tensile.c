@@ -323,8 +323,7 @@ static enum wb_status run(struct options *o, struct wb_tensile_result *result)
     WB_TRY(wb_tensile_run(result, o->datasets.pointers, o->datasets.n, &o->settings, NULL));
     if (!o->common.output)
         return WB_OK;
-    if (!o->common.force && wb_file_exists(o->common.output))
-        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
+    WB_TRY(wb_command_check_output(o->common.output, o->common.force));
     return wb_tensile_material_write(result, o->name, &o->material, o->common.output, NULL);
 }
 
@@ -364,6 +363,5 @@ int wb_calibrate_tensile(int argc, char **argv)
         code = deliver(&options, &result);
     wb_tensile_release(&result);
     wb_datasets_release(&options.datasets);
-    wb_command_release(&options.common);
     return code;
 }

@@ -14,7 +14,7 @@
 
 #define WB_LOG_DOMAIN "calibrate"
 
-static bool report_fits(void *context, int done, int all)
+bool wb_calibrate_report(void *context, int done, int all)
 {
     (void)all;
     wb_progress_update(context, done, NULL);
@@ -238,7 +238,7 @@ int wb_calibrate_three_point(struct wb_three_point_calibrate_settings *settings,
 {
     struct wb_three_point_calibration calibration = {0};
     struct wb_progress progress;
-    settings->progress = report_fits;
+    settings->progress = wb_calibrate_report;
     settings->progress_context = &progress;
     wb_progress_start(&progress, "calibrate", "fits",
                       (double)datasets->n * (1 + WB_THREE_POINT_VARIANTS));

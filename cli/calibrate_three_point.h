@@ -11,4 +11,8 @@ int wb_calibrate_three_point(struct wb_three_point_calibrate_settings *settings,
                              const struct wb_datasets *datasets,
                              const struct wb_command_common *common);
 
+/* A callback of a calibration's settings: shows the fits that are done in a wb_progress, the
+ * context; false after an interrupt. */
+bool wb_calibrate_report(void *context, int done, int all);
+
 #endif

@@ -327,10 +327,8 @@ int wb_check_cell_run(const struct wb_stage_options *options, const struct wb_ri
     if (!take_masses(&check) || !fits_the_cell(&check))
         return WB_EXIT_USAGE;
     /* Checked before the operator hangs nine masses. */
-    if (output && !options->common.force && wb_file_exists(output)) {
-        wb_error("'%s' exists; --force overwrites it", output);
+    if (output && wb_command_check_output(output, options->common.force) != WB_OK)
         return WB_EXIT_FAILED;
-    }
     if (!measure(&check))
         return WB_EXIT_FAILED;
     judge(&check);

@@ -188,6 +188,5 @@ int wb_cmd_align(int argc, char **argv)
     if (code == WB_EXIT_OK && n_done < n)
         code = WB_EXIT_INCOMPLETE;
     free(results);
-    wb_command_release(&options.common);
     return code;
 }

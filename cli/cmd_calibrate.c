@@ -125,15 +125,6 @@ static bool report_beam_runs(void *context, int evaluation, double error, double
     return !wb_interrupted();
 }
 
-static void set_material(struct wb_json *object, double modulus, double yield, double strength,
-                         double exponent)
-{
-    wb_json_set_number(object, "youngs_modulus_MPa", modulus / WB_MPA);
-    wb_json_set_number(object, "yield_stress_MPa", yield / WB_MPA);
-    wb_json_set_number(object, "strength_coefficient_MPa", strength / WB_MPA);
-    wb_json_set_number(object, "hardening_exponent", exponent);
-}
-
 static void set_deviations(struct wb_json *root, const struct wb_calibrate_result *r)
 {
     const char *remarks[WB_CALIBRATE_MOST_REMARKS];
@@ -177,8 +168,10 @@ static void print_json(const struct options *o, const struct wb_calibrate_result
     wb_json_set_boolean(root, "bow_corrected", r->bow_corrected);
     wb_json_set_number(root, "bow_spread_mm", r->bow_spread / WB_MM);
     wb_json_set_number(root, "bow_mm", wb_dataset_bow(&r->info) / WB_MM);
-    set_material(root, r->material.youngs_modulus, r->material.yield_stress,
-                 r->material.strength_coefficient, r->material.hardening_exponent);
+    wb_json_set_number(root, "youngs_modulus_MPa", r->material.youngs_modulus / WB_MPA);
+    wb_json_set_number(root, "yield_stress_MPa", r->material.yield_stress / WB_MPA);
+    wb_json_set_number(root, "strength_coefficient_MPa", r->material.strength_coefficient / WB_MPA);
+    wb_json_set_number(root, "hardening_exponent", r->material.hardening_exponent);
     wb_json_set_number(root, "poissons_ratio", r->material.poissons_ratio);
     set_deviations(root, r);
     wb_json_set_number(root, "first_strength_coefficient_MPa",
@@ -351,18 +344,11 @@ static int run_paper(struct options *o)
 
 /* --- whole cycles --- */
 
-static bool report_specimens(void *context, int done, int all)
-{
-    (void)all;
-    wb_progress_update(context, done, NULL);
-    return !wb_interrupted();
-}
-
 static enum wb_status calibrate_on_cycles(struct options *o)
 {
     struct wb_cycle_calibrate_settings *const settings = &o->cycle.settings;
     struct wb_progress progress;
-    settings->progress = report_specimens;
+    settings->progress = wb_calibrate_report;
     settings->progress_context = &progress;
     wb_progress_start(&progress, "calibrate", "fits", 2.0 * o->datasets.n);
     const enum wb_status status =
@@ -490,8 +476,8 @@ static bool has_half_a_pool(const struct options *o)
 
 static enum wb_status begin(struct options *o)
 {
-    if (o->common.output && !o->common.force && wb_file_exists(o->common.output))
-        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
+    if (o->common.output)
+        WB_TRY(wb_command_check_output(o->common.output, o->common.force));
     WB_TRY(wb_datasets_read(&o->datasets, o->common.inputs, o->common.n,
                             WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT)));
     WB_TRY(choose_method(o));
@@ -551,6 +537,5 @@ int wb_cmd_calibrate(int argc, char **argv)
     wb_interrupt_install();
     const int code = run(&options);
     wb_datasets_release(&options.datasets);
-    wb_command_release(&options.common);
     return code;
 }

@@ -178,6 +178,5 @@ int wb_cmd_compare(int argc, char **argv)
     struct wb_compare compare = {.within = 0.0};
     wb_command_parse(&argp, argc, argv, &options);
     const enum wb_status status = run(&options, &compare, properties);
-    wb_command_release(&options.common);
     return status == WB_OK ? codes[compare.verdict] : wb_command_exit(status);
 }

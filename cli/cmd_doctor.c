@@ -197,16 +197,6 @@ static int scan_bench(const struct options *options)
     return wb_scan_is_complete(&scan) ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
-static enum wb_status check_files(const struct options *options)
-{
-    const struct wb_bend_test_request *const test = &options->request.test;
-    WB_TRY(wb_file_kind_check(test->rig_path, WB_FILE_BIT(WB_FILE_RIG)));
-    return test->specimen_path
-               ? wb_file_kind_check(test->specimen_path,
-                                    WB_FILE_BIT(WB_FILE_SPECIMEN) | WB_FILE_BIT(WB_FILE_TEST_PIECE))
-               : WB_OK;
-}
-
 int wb_cmd_doctor(int argc, char **argv)
 {
     struct options options = {.common = {.noun = NULL}};
@@ -217,10 +207,12 @@ int wb_cmd_doctor(int argc, char **argv)
     wb_interrupt_install();
     if (options.scans)
         return scan_bench(&options);
-    options.request.test.rig_path = options.words[0];
-    if (options.n_words > 1)
-        options.request.test.specimen_path = wb_command_find(options.words[1], specimen);
-    if (check_files(&options) != WB_OK)
+    struct wb_bend_test_request *const test = &options.request.test;
+    test->rig_path = options.words[0];
+    test->specimen_path = options.words[1];
+    if (wb_file_kind_check(test->rig_path, WB_FILE_BIT(WB_FILE_RIG)) != WB_OK ||
+        (test->specimen_path &&
+         wb_file_kind_find_input(&test->specimen_path, specimen, WB_FILE_SPECIMENS) != WB_OK))
         return WB_EXIT_FAILED;
     const int code = look_at_bench(&options, &report);
     if (code != WB_EXIT_OK)

@@ -361,9 +361,7 @@ int wb_cmd_record(int argc, char **argv)
     if (options.series)
         return run_series(&options);
     options.request.output_path = options.common.output;
-    options.request.specimen_path = wb_command_find(options.request.specimen_path, specimen);
-    if (wb_file_kind_check(options.request.specimen_path,
-                           WB_FILE_BIT(WB_FILE_SPECIMEN) | WB_FILE_BIT(WB_FILE_TEST_PIECE)) !=
+    if (wb_file_kind_find_input(&options.request.specimen_path, specimen, WB_FILE_SPECIMENS) !=
         WB_OK)
         return WB_EXIT_FAILED;
     if (options.figure && wb_file_exists(options.figure)) {

@@ -95,13 +95,11 @@ int wb_cmd_rig(int argc, char **argv)
     struct wb_file_lock lock;
     static const volatile bool never = false;
     parse_options(argc, argv, &options);
-    options.virtual.bench.rig = wb_command_find(options.common.input, rig);
-    options.virtual.bench.folder = options.run;
-    options.virtual.bench.specimen = wb_command_find(options.virtual.bench.specimen, specimen);
-    if (wb_file_kind_check(options.virtual.bench.rig, WB_FILE_BIT(WB_FILE_RIG)) != WB_OK ||
-        wb_file_kind_check(options.virtual.bench.specimen,
-                           WB_FILE_BIT(WB_FILE_SPECIMEN) | WB_FILE_BIT(WB_FILE_TEST_PIECE)) !=
-            WB_OK)
+    struct wb_bench_settings *const settings = &options.virtual.bench;
+    settings->rig = options.common.input;
+    settings->folder = options.run;
+    if (wb_file_kind_find_input(&settings->rig, rig, WB_FILE_BIT(WB_FILE_RIG)) != WB_OK ||
+        wb_file_kind_find_input(&settings->specimen, specimen, WB_FILE_SPECIMENS) != WB_OK)
         return WB_EXIT_FAILED;
     wb_interrupt_install();
     wb_acquisition_raise_priority();
@@ -109,7 +107,7 @@ int wb_cmd_rig(int argc, char **argv)
         wb_file_join(path, options.run, "rig.yaml") != WB_OK ||
         lock_folder(&lock, options.run) != WB_OK)
         return WB_EXIT_FAILED;
-    if (wb_bench_open(&bench, &options.virtual.bench) != WB_OK) {
+    if (wb_bench_open(&bench, settings) != WB_OK) {
         wb_file_unlock(&lock);
         return WB_EXIT_FAILED;
     }

@@ -561,6 +561,5 @@ int wb_cmd_validate(int argc, char **argv)
     free(groups.items);
     free(groups.of);
     wb_datasets_release(&options.datasets);
-    wb_command_release(&options.common);
     return code;
 }

@@ -124,7 +124,6 @@ int wb_cmd_verify(int argc, char **argv)
         else
             print_text(options.inputs[i], sha256, &survey);
     }
-    wb_command_release(&options);
     if (options.json)
         wb_command_print_json(root);
     return code;

@@ -4,9 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/number.h"
 #include "cli/complete.h"
+
+#define WB_LOG_DOMAIN "command"
 
 const struct argp_option wb_command_help_options[] = {
     {"help", 'h', NULL, 0, "Show this help", -1},
@@ -70,13 +71,12 @@ static void take_argument(struct argp_state *state, const char *argument,
 {
     if (common->least == 0 && common->input)
         argp_error(state, "one %s at a time: unexpected argument '%s'", common->noun, argument);
-    if (!common->input)
+    if (!common->input) {
+        /* argp passes the arguments after all options, which it has moved before them. */
+        common->inputs = (const char *const *)&state->argv[state->next - 1];
         common->input = argument;
-    if (common->least == 0)
-        return;
-    const size_t n = (size_t)common->n + 1;
-    common->inputs = wb_memory_resize(common->inputs, n, sizeof *common->inputs);
-    common->inputs[common->n++] = argument;
+    }
+    common->n += common->least > 0;
 }
 
 static void check(struct argp_state *state, const struct wb_command_common *common)
@@ -133,18 +133,18 @@ error_t wb_command_parse_common(int key, char *argument, struct argp_state *stat
     }
 }
 
-void wb_command_release(struct wb_command_common *common)
-{
-    free(common->inputs);
-    common->inputs = NULL;
-    common->n = 0;
-}
-
 const char *wb_command_find(const char *name, char path[WB_PATH])
 {
     if (wb_file_exists(name) || wb_file_find_data(path, name) != WB_OK)
         return name;
     return path;
+}
+
+enum wb_status wb_command_check_output(const char *path, bool force)
+{
+    if (!force && wb_file_exists(path))
+        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", path);
+    return WB_OK;
 }
 
 bool wb_command_ends_in(const char *name, const char *ending)

@@ -46,7 +46,7 @@ struct wb_command_common {
                                 not an option of the command */
     int least;               /* smallest number of several arguments; 0: exactly one */
     const char *input;       /* the argument, or the first */
-    const char **inputs;     /* (n) of several; texts are borrowed, see wb_command_release() */
+    const char *const *inputs; /* (n) of several; borrowed from argv */
     int n;
     const char *output;
     bool force, json;
@@ -80,12 +80,13 @@ error_t wb_command_parse_field(int key, char *argument, struct argp_state *state
  * given. The parser's input begins with a struct wb_command_common. */
 error_t wb_command_parse_common(int key, char *argument, struct argp_state *state);
 
-void wb_command_release(struct wb_command_common *common); /* the list of arguments */
-
 /* Finds a file by its name: in the current folder, else among the shipped files, so that
  * "fixtures/rigs/paper.yaml" works from any folder. Returns `path` or, if neither exists, `name`.
  */
 const char *wb_command_find(const char *name, char path[WB_PATH]);
+
+/* Fails with WB_ERR_EXISTS where a file exists and may not be replaced. */
+WB_MUST_CHECK enum wb_status wb_command_check_output(const char *path, bool force);
 
 /* Whether a file's name is longer than this ending and ends in it. */
 bool wb_command_ends_in(const char *name, const char *ending);

@@ -55,8 +55,7 @@ static const char *find_kind(int argc, char **argv)
 static enum wb_status write_card(const struct options *o, const struct wb_text *card)
 {
     if (o->common.output) {
-        if (!o->common.force && wb_file_exists(o->common.output))
-            return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->common.output);
+        WB_TRY(wb_command_check_output(o->common.output, o->common.force));
         return wb_file_write_text(o->common.output, card);
     }
     if (fwrite(card->bytes, 1, card->length, stdout) != card->length || fflush(stdout) != 0)

@@ -115,8 +115,7 @@ static enum wb_status export_tables(struct job *job)
 {
     const struct wb_command_common *const o = job->options;
     char source[WB_PATH + 160];
-    if (!o->force && wb_file_exists(o->output))
-        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", o->output);
+    WB_TRY(wb_command_check_output(o->output, o->force));
     WB_TRY(wb_file_is_folder(o->input) ? take_dataset(job) : take_recording(job));
     snprintf(source, sizeof source, "%s (sha256 %s), wirebench %s (%s)", wb_file_name(o->input),
              job->sha256, wb_version(), wb_version_revision());

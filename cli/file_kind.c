@@ -377,3 +377,9 @@ enum wb_status wb_file_kind_check(const char *path, unsigned expected)
     wb_text_release(&next);
     return WB_ERR_FORMAT;
 }
+
+enum wb_status wb_file_kind_find_input(const char **name, char path[WB_PATH], unsigned expected)
+{
+    *name = wb_command_find(*name, path);
+    return wb_file_kind_check(*name, expected);
+}

@@ -6,6 +6,7 @@
 #ifndef WB_CLI_FILE_KIND_H
 #define WB_CLI_FILE_KIND_H
 
+#include "base/file.h"
 #include "base/status.h"
 #include "base/text.h"
 
@@ -43,6 +44,7 @@ enum wb_file_kind {
     WB_FILE_KINDS
 };
 #define WB_FILE_BIT(kind) (1U << (kind))
+#define WB_FILE_SPECIMENS (WB_FILE_BIT(WB_FILE_SPECIMEN) | WB_FILE_BIT(WB_FILE_TEST_PIECE))
 
 /* The kind of a file or folder. Reads what it needs of it; logs nothing. */
 enum wb_file_kind wb_file_kind_find(const char *path);
@@ -58,5 +60,10 @@ void wb_file_kind_append_next(struct wb_text *text, enum wb_file_kind kind, cons
  * The message names the kind, the kinds that are expected, and the next command for this file.
  * Files of unknown kind pass: their reader says what is wrong. */
 WB_MUST_CHECK enum wb_status wb_file_kind_check(const char *path, unsigned expected);
+
+/* Finds a file of the command line with wb_command_find(), which may store its path in `path`, and
+ * checks its kind; *name is changed to what was found. */
+WB_MUST_CHECK enum wb_status wb_file_kind_find_input(const char **name, char path[WB_PATH],
+                                                     unsigned expected);
 
 #endif

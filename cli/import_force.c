@@ -217,12 +217,12 @@ static enum wb_status run(const struct options *o, struct wb_dataset *dataset,
     struct wb_test_piece piece;
     char found[WB_PATH], *bytes;
     size_t size;
-    const char *const path = wb_command_find(o->machine, found);
-    WB_TRY(wb_file_kind_check(path, WB_FILE_BIT(WB_FILE_MACHINE)));
+    const char *path = o->machine;
+    WB_TRY(wb_file_kind_find_input(&path, found, WB_FILE_BIT(WB_FILE_MACHINE)));
     WB_TRY(wb_machine_read(path, &machine, NULL));
-    const char *const piece_path = wb_command_find(o->specimen, found);
-    WB_TRY(wb_file_kind_check(piece_path, WB_FILE_BIT(WB_FILE_TEST_PIECE)));
-    WB_TRY(wb_test_piece_read(piece_path, machine.kind, &piece, NULL));
+    path = o->specimen;
+    WB_TRY(wb_file_kind_find_input(&path, found, WB_FILE_BIT(WB_FILE_TEST_PIECE)));
+    WB_TRY(wb_test_piece_read(path, machine.kind, &piece, NULL));
     WB_TRY(wb_file_kind_check(o->common.input, WB_FILE_BIT(WB_FILE_TABLE)));
     WB_TRY(wb_file_read(o->common.input, &bytes, &size));
     const struct wb_machine_import from = {o->common.input, o->columns, &o->form, &machine, &piece};

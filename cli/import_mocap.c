@@ -221,14 +221,6 @@ static void print_json(const struct wb_mocap_import *r, const char *output)
     wb_command_print_json(root);
 }
 
-static enum wb_status check_files(const struct wb_mocap_import_request *request)
-{
-    WB_TRY(wb_file_kind_check(request->take_path, WB_FILE_BIT(WB_FILE_TAKE)));
-    WB_TRY(wb_file_kind_check(request->specimen_path,
-                              WB_FILE_BIT(WB_FILE_SPECIMEN) | WB_FILE_BIT(WB_FILE_TEST_PIECE)));
-    return wb_file_kind_check(request->rig_path, WB_FILE_BIT(WB_FILE_RIG));
-}
-
 int wb_import_mocap(int argc, char **argv)
 {
     struct options options = {
@@ -241,9 +233,10 @@ int wb_import_mocap(int argc, char **argv)
     struct wb_mocap_import_request *const request = &options.request;
     request->take_path = options.common.input;
     request->output = options.common.output;
-    request->specimen_path = wb_command_find(request->specimen_path, specimen);
-    request->rig_path = wb_command_find(request->rig_path, rig);
-    if (check_files(request) != WB_OK || wb_mocap_import_run(&result, request) != WB_OK)
+    if (wb_file_kind_check(request->take_path, WB_FILE_BIT(WB_FILE_TAKE)) != WB_OK ||
+        wb_file_kind_find_input(&request->specimen_path, specimen, WB_FILE_SPECIMENS) != WB_OK ||
+        wb_file_kind_find_input(&request->rig_path, rig, WB_FILE_BIT(WB_FILE_RIG)) != WB_OK ||
+        wb_mocap_import_run(&result, request) != WB_OK)
         return WB_EXIT_FAILED;
     if (options.common.json) {
         print_json(&result, request->output);

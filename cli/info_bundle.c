@@ -204,8 +204,7 @@ static enum wb_status draw(const struct wb_info_options *options,
 {
     const char *const mesh = options->mesh ? options->mesh : model->run.mesh;
     struct wb_figure *figure;
-    if (!options->common.force && wb_file_exists(options->figure))
-        return wb_fail(WB_ERR_EXISTS, "'%s' exists; --force overwrites it", options->figure);
+    WB_TRY(wb_command_check_output(options->figure, options->common.force));
     WB_TRY(wb_figures_bundle_draw(&figure, "section", 1, &model, mesh));
     const enum wb_status status = wb_figure_write_file(figure, pixels_of_a_point, options->figure);
     wb_figure_destroy(figure);

@@ -19,6 +19,7 @@ struct entry {
     const struct wb_settings_source *source;
     size_t offset;    /* of the row's struct in the input */
     unsigned applies; /* bits of places; 0: all */
+    char *help;       /* owned */
 };
 
 /* State of the parser. */
@@ -28,7 +29,6 @@ struct line {
     size_t n;
     struct entry *entries;       /* (n) */
     struct argp_option *options; /* the command's own, then those of the entries */
-    char **help;                 /* (n) */
     const char *first;           /* argument */
 };
 
@@ -65,6 +65,7 @@ static void add_entry(struct line *line, const struct wb_settings_source *source
         .source = source,
         .offset = source->offset + table->offset,
         .applies = row->applies ? row->applies : source->applies,
+        .help = entry->help,
     };
     const unsigned others = i < line->n ? entry->applies : 0;
     const bool is_kept = i < line->n && (is_taken(line, entry) || !is_taken(line, &own));
@@ -77,8 +78,8 @@ static void add_entry(struct line *line, const struct wb_settings_source *source
     if (!shows && !line->command->places)
         return;
     wb_setting_describe(row, table->otherwise, &help);
-    free(line->help[i]);
-    line->help[i] = help.bytes;
+    free(entry->help);
+    entry->help = help.bytes;
     line->options[i] = (struct argp_option){
         .name = row->option,
         .key = FIRST_KEY + (int)i,
@@ -112,7 +113,6 @@ static void begin(struct line *line, const struct wb_settings_command *command, 
         .input = input,
         .entries = wb_memory_new(most + 1, sizeof *line->entries),
         .options = wb_memory_new(most + n_own + command->n_sources + 1, sizeof *line->options),
-        .help = wb_memory_new(most + 1, sizeof *line->help),
     };
     for (size_t s = 0; s < command->n_sources; s++) {
         const struct wb_settings_source *const source = &command->sources[s];
@@ -135,8 +135,7 @@ static void begin(struct line *line, const struct wb_settings_command *command, 
 static void end(struct line *line)
 {
     for (size_t i = 0; i < line->n; i++)
-        free(line->help[i]);
-    free(line->help);
+        free(line->entries[i].help);
     free(line->options);
     free(line->entries);
 }
