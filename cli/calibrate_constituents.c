@@ -57,8 +57,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         if ((o->jacket != NULL) != (o->layers.outer_diameter > 0.0))
             argp_error(state, "--jacket and --outer-diameter-mm must be given together");
         break;
-    default:
-        break;
     }
     return wb_command_parse_common(key, argument, state);
 }

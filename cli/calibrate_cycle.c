@@ -131,6 +131,7 @@ static void print_correlation(const struct wb_cycle_calibration *c)
 static void print_law(const struct wb_cycle_calibration *c)
 {
     const struct wb_law *const law = &c->law;
+    const struct wb_material *const m = &law->material;
     char a[WB_PRINT_NUMBER], b[WB_PRINT_NUMBER];
     static const char *const forms[] = {"Ludwik's", "parallel parts'", "Chaboche's"};
     printf("%s law, %s hardening", forms[law->form], wb_law_rule_name(law));
@@ -138,19 +139,16 @@ static void print_law(const struct wb_cycle_calibration *c)
         printf(", isotropic share %.3g", law->isotropic_share);
     printf(", over the outer diameter\n  %-8s %10s MPa\n", "E",
            wb_print_number(law->material.youngs_modulus / WB_MPA, a));
-    if (law->form == WB_LAW_LUDWIK) {
-        const struct wb_material *const m = &law->material;
+    if (law->form != WB_LAW_PARALLEL)
         printf("  %-8s %10s MPa\n", "sigma_Y", wb_print_number(m->yield_stress / WB_MPA, a));
+    if (law->form == WB_LAW_LUDWIK) {
         print_ludwik_number(c, "K", c->is_strength_identifiable, m->strength_coefficient / WB_MPA,
                             "MPa");
         print_ludwik_number(c, "n", c->is_exponent_identifiable, m->hardening_exponent, "");
     }
-    if (law->form == WB_LAW_CHABOCHE) {
-        printf("  %-8s %10s MPa\n", "sigma_Y",
-               wb_print_number(law->material.yield_stress / WB_MPA, a));
+    if (law->form == WB_LAW_CHABOCHE)
         printf("  %-8s %10s MPa, b %s\n", "Q", wb_print_number(law->saturation / WB_MPA, a),
                wb_print_number(law->rate, b));
-    }
     for (int i = 0; i < law->n_backs; i++)
         printf("  C%-7d %10s MPa, gamma%d %s\n", i + 1,
                wb_print_number(law->backs[i].modulus / WB_MPA, a), i + 1,

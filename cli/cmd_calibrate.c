@@ -409,11 +409,10 @@ static int deliver_cycle(const struct options *o)
         if (status != WB_OK)
             return wb_command_exit(status);
     }
-    if (o->common.json) {
+    if (o->common.json)
         wb_calibrate_cycle_print_json(&o->cycle);
-    } else {
+    else
         wb_calibrate_cycle_print(&o->cycle, o->common.output, figure);
-    }
     warn_cycle(o);
     return wb_cycle_verdict_is_complete(&o->cycle.verdict) ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

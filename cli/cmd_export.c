@@ -7,10 +7,8 @@
 #include "analysis/cards/card.h"
 #include "base/file.h"
 #include "base/version.h"
-#include "cli/command.h"
 #include "cli/complete.h"
-#include "cli/export_card.h"
-#include "cli/export_hdf5.h"
+#include "cli/export.h"
 #include "cli/file_kind.h"
 #include "daq/recording/export.h"
 #include "daq/recording/replay.h"
@@ -99,7 +97,7 @@ int wb_cmd_export(int argc, char **argv)
     if (wb_file_kind_check(options.input,
                            WB_FILE_BIT(WB_FILE_RECORDING) | WB_FILE_BIT(WB_FILE_DATASET)) != WB_OK)
         return WB_EXIT_FAILED;
-    if (wb_export_hdf5_is(options.output))
+    if (wb_command_ends_in(options.output, ".h5") || wb_command_ends_in(options.output, ".hdf5"))
         return wb_export_hdf5(&options);
     if (wb_file_is_folder(options.input))
         return wb_command_exit(wb_fail(WB_ERR_UNSUPPORTED,

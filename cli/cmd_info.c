@@ -84,8 +84,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
             argp_error(state, "--figure applies to bundles, and '%s' is not a bundle",
                        options->common.input);
         break;
-    default:
-        break;
     }
     return wb_command_parse_common(key, argument, state);
 }

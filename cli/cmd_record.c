@@ -127,8 +127,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
                        "with zstd",
                        options->common.output);
         break;
-    default:
-        break;
     }
     return wb_command_parse_common(key, argument, state);
 }

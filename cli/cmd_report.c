@@ -67,8 +67,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         return check_end(o, state);
-    default:
-        break;
     }
     return wb_command_parse_common(key, argument, state);
 }

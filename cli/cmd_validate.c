@@ -448,7 +448,7 @@ static const char *next_of(enum wb_validate_verdict worst)
 static void print_finding(const struct options *o, const struct wb_properties *properties,
                           const struct groups *groups, const char *figure)
 {
-    struct wb_finding finding = {.figure = figure && figure[0] ? figure : NULL};
+    struct wb_finding finding = {.figure = figure};
     const int n_all = o->common.n - 1;
     int n_same = 0;
     enum wb_validate_verdict worst = WB_VALIDATE_PREDICTED;
@@ -504,9 +504,8 @@ static int deliver(const struct options *o, const struct wb_properties *properti
         if (status != WB_OK)
             return wb_command_exit(status);
     }
-    if (o->common.json) {
+    if (o->common.json)
         print_json(o, properties, groups);
-    }
     for (int i = 0; i < groups->n; i++) {
         const struct group *const g = &groups->items[i];
         const struct wb_prediction *const prediction = &g->result.elastoplastic;

@@ -1,11 +1,10 @@
-#include "cli/export_card.h"
-
+/* wirebench export --to KIND: the law of a wire as a card. */
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "analysis/cards/card.h"
-#include "cli/command.h"
+#include "cli/export.h"
 #include "cli/file_kind.h"
 #include "cli/settings.h"
 

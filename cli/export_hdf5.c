@@ -1,5 +1,4 @@
-#include "cli/export_hdf5.h"
-
+/* wirebench export REC|DATASET -o FILE.h5: all tables of a recording or dataset in one file. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +7,7 @@
 #include "analysis/dataset/hdf5_file.h"
 #include "base/hash.h"
 #include "base/version.h"
+#include "cli/export.h"
 #include "daq/recording/sample_columns.h"
 
 #define WB_LOG_DOMAIN "export"
@@ -25,11 +25,6 @@ struct job {
     bool is_virtual, is_complete;
     uint64_t damaged_chunks;
 };
-
-bool wb_export_hdf5_is(const char *output)
-{
-    return wb_command_ends_in(output, ".h5") || wb_command_ends_in(output, ".hdf5");
-}
 
 /* --- recordings --- */
 

@@ -14,7 +14,7 @@
 
 struct wb_finding {
     struct wb_text found, trust, next; /* one sentence each; without text: left out */
-    const char *figure;                /* path of a figure or page; NULL: none was written */
+    const char *figure;                /* path of a figure or page; NULL or "": none was written */
 };
 
 /* Prints the lines on stdout, wrapped at words to the width of a terminal, and releases the texts.

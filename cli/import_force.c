@@ -80,8 +80,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
             argp_error(state, "specimen or machine missing: --specimen SPECIMEN.yaml --machine "
                               "MACHINE.yaml");
         break;
-    default:
-        break;
     }
     return wb_command_parse_common(key, argument, state);
 }

@@ -103,8 +103,6 @@ static void handle_key(struct wb_bend_test *test, int key)
     case 'q':
         wb_bend_test_stop(test);
         break;
-    default:
-        break;
     }
 }
 

@@ -33,8 +33,7 @@ struct wirebench_recording {
     int n_problems;
     char (*problems)[PROBLEM_SIZE]; /* (n_problems) owned */
     bool is_decoded;
-    enum wb_status decoding; /* WB_OK, or WB_ERR_DATA: the recording breaks off */
-    char why[1024];          /* what was left out; "" */
+    char why[1024]; /* what was left out; "" */
     struct wirebench_table tables[WB_SAMPLE_COLUMNS_TABLES];
 };
 
@@ -197,16 +196,18 @@ static enum wb_status decode(struct wirebench_recording *recording)
     struct wb_replay_counts counts;
     struct wb_columns tables[WB_SAMPLE_COLUMNS_TABLES];
     WB_TRY(wb_replay_rig(recording->recording, &rig));
-    recording->decoding = wb_sample_columns_read(tables, recording->recording, &rig, &counts);
-    if (recording->decoding != WB_OK && recording->decoding != WB_ERR_DATA)
-        return recording->decoding;
+    /* WB_ERR_DATA: the recording breaks off. */
+    const enum wb_status status =
+        wb_sample_columns_read(tables, recording->recording, &rig, &counts);
+    if (status != WB_OK && status != WB_ERR_DATA)
+        return status;
     for (int i = 0; i < WB_SAMPLE_COLUMNS_TABLES; i++)
         recording->tables[i].columns = tables[i];
     if (counts.damaged_chunks > 0)
         snprintf(recording->why, sizeof recording->why, "'%s': %llu damaged chunk%s left out",
                  recording->path, (unsigned long long)counts.damaged_chunks,
                  counts.damaged_chunks == 1 ? " was" : "s were");
-    else if (recording->decoding != WB_OK)
+    else if (status != WB_OK)
         snprintf(recording->why, sizeof recording->why,
                  "'%s': parts cannot be read and are left out", recording->path);
     else if (!wb_recording_is_complete(recording->recording))
