@@ -104,15 +104,10 @@ static void print_json(const struct wb_machine_compliance *c, const struct wb_te
     wb_command_print_json(root);
 }
 
-static double youngs_modulus(const struct wb_machine_compliance_settings *settings,
-                             const struct wb_test_info *info)
-{
-    return settings->rigidity / wb_circle_second_moment(info->outer_diameter);
-}
-
 static int deliver(const struct options *o, const struct wb_machine_compliance *c)
 {
     const struct wb_test_info *const info = &o->datasets.items[0].info;
+    const double modulus = o->settings.rigidity / wb_circle_second_moment(info->outer_diameter);
     if (o->common.json) {
         print_json(c, info);
     } else {
@@ -124,7 +119,7 @@ static int deliver(const struct options *o, const struct wb_machine_compliance *
             "no unloading was measured: a bar that yields early gives a straight line as well, and "
             "a compliance that is too large; the strain of its outer fibre was %.2g %%, so that "
             "the bar must not yield below %.0f MPa",
-            100.0 * c->strain, c->strain * youngs_modulus(&o->settings, info) / WB_MPA);
+            100.0 * c->strain, c->strain * modulus / WB_MPA);
     if (c->is_identifiable)
         return WB_EXIT_OK;
     if (!c->is_reversible)

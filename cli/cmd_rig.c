@@ -53,14 +53,6 @@ static const struct wb_settings_source sources[] = {
 static const struct wb_settings_command command = {
     .argp = &argp, .sources = sources, .n_sources = WB_COUNT(sources), .place = 1};
 
-static void parse_options(int argc, char **argv, struct wb_rig_options *options)
-{
-    wb_bench_options_default(&options->virtual);
-    wb_setting_fill(&wb_bench_options_rig, options);
-    wb_settings_parse(&command, argc, argv, options);
-    wb_bench_options_complete(&options->virtual);
-}
-
 /* One rig a folder: a second one would replace the rig file of the first and later remove it.
  */
 static enum wb_status lock_folder(struct wb_file_lock *lock, const char *folder)
@@ -94,7 +86,10 @@ int wb_cmd_rig(int argc, char **argv)
     char path[WB_PATH], rig[WB_PATH], specimen[WB_PATH];
     struct wb_file_lock lock;
     static const volatile bool never = false;
-    parse_options(argc, argv, &options);
+    wb_bench_options_default(&options.virtual);
+    wb_setting_fill(&wb_bench_options_rig, &options);
+    wb_settings_parse(&command, argc, argv, &options);
+    wb_bench_options_complete(&options.virtual);
     struct wb_bench_settings *const settings = &options.virtual.bench;
     settings->rig = options.common.input;
     settings->folder = options.run;

@@ -94,6 +94,7 @@ static bool has_foreign_option(const struct options *o)
 /* Of one wire, length and loading, or of one wire on one bench of three-point bending. */
 struct group {
     bool is_three_point;
+    const struct wb_test_info *info; /* of the result */
     struct wb_validate_result result;
     struct wb_validate_three_point three_point;
 };
@@ -117,6 +118,7 @@ static enum wb_status run_group(const struct options *o, const struct wb_propert
     }
     struct group *const g = &groups->items[group];
     g->is_three_point = members[0]->info.kind == WB_TEST_THREE_POINT;
+    g->info = g->is_three_point ? &g->three_point.info : &g->result.info;
     const enum wb_status status =
         g->is_three_point ? wb_validate_three_point_run(&g->three_point, properties, members, n,
                                                         &o->three_point, NULL)
@@ -155,8 +157,7 @@ static void file_name(char *name, size_t size, const struct wb_test_info *info, 
 static enum wb_status write_table(const char *folder, const struct group *g, bool unloading)
 {
     char name[128], path[WB_PATH];
-    file_name(name, sizeof name, g->is_three_point ? &g->three_point.info : &g->result.info,
-              unloading ? "-unloading.csv" : ".csv");
+    file_name(name, sizeof name, g->info, unloading ? "-unloading.csv" : ".csv");
     WB_TRY(wb_file_join(path, folder, name));
     if (g->is_three_point)
         return wb_validate_three_point_write_csv(&g->three_point, unloading, path);
@@ -470,8 +471,7 @@ static void print_finding(const struct options *o, const struct wb_properties *p
             wb_text_append(&finding.trust, "; ");
         if (groups->n > 1)
             wb_text_append(&finding.trust, "%s = %g mm: ", g->is_three_point ? "span" : "L",
-                           (g->is_three_point ? g->three_point.info : g->result.info).length /
-                               WB_MM);
+                           g->info->length / WB_MM);
         append_verdict(&finding.trust, g);
     }
     if (n_same == n_all)

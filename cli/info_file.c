@@ -37,6 +37,7 @@ static void append_next_of(struct wb_text *next, const struct wb_test_info *info
         wb_finding_append_command(next, "wirebench validate PROPERTIES.yaml %s", path);
 }
 
+/* `next` receives what to do with the dataset where this depends on its contents. */
 static enum wb_status print_dataset(const char *path, struct wb_json *root, struct wb_text *next)
 {
     const unsigned tests = WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT) |
@@ -57,20 +58,6 @@ static enum wb_status print_dataset(const char *path, struct wb_json *root, stru
     return status;
 }
 
-/* `next` receives what to do with the file where this depends on its contents. */
-static enum wb_status print_contents(enum wb_file_kind kind, const char *path, struct wb_json *root,
-                                     struct wb_text *next)
-{
-    switch (kind) {
-    case WB_FILE_PROPERTIES:
-        return print_properties(path, root);
-    case WB_FILE_DATASET:
-        return print_dataset(path, root, next);
-    default:
-        return WB_OK;
-    }
-}
-
 /* Whether it is a YAML file that cannot be parsed, which is reported. */
 static bool has_syntax_error(const char *path)
 {
@@ -87,17 +74,16 @@ int wb_info_file(const struct wb_info_options *options, enum wb_file_kind kind)
 {
     const char *const path = options->common.input;
     struct wb_text next = {0};
-    int code = WB_EXIT_OK;
+    enum wb_status status = WB_OK;
     if (!wb_file_exists(path)) {
         wb_error("'%s' does not exist", path);
         return WB_EXIT_FAILED;
     }
-    if (kind == WB_FILE_UNKNOWN && has_syntax_error(path))
-        return WB_EXIT_FAILED;
     if (kind == WB_FILE_UNKNOWN) {
-        wb_error("'%s' is of unknown kind: expected a file or folder that a command reads or "
-                 "writes, see file-formats.md",
-                 path);
+        if (!has_syntax_error(path))
+            wb_error("'%s' is of unknown kind: expected a file or folder that a command reads or "
+                     "writes, see file-formats.md",
+                     path);
         return WB_EXIT_FAILED;
     }
     struct wb_json *const root = options->common.json ? wb_json_create() : NULL;
@@ -107,12 +93,14 @@ int wb_info_file(const struct wb_info_options *options, enum wb_file_kind kind)
     } else {
         printf("%s: %s\n", path, wb_file_kind_name(kind));
     }
-    const enum wb_status status = print_contents(kind, path, root, &next);
+    if (kind == WB_FILE_PROPERTIES)
+        status = print_properties(path, root);
+    else if (kind == WB_FILE_DATASET)
+        status = print_dataset(path, root, &next);
     if (next.length == 0)
         wb_file_kind_append_next(&next, kind, path);
     if (status != WB_OK) {
         wb_json_destroy(root);
-        code = WB_EXIT_FAILED;
     } else if (root) {
         wb_json_set_text(root, "next", wb_text_string(&next));
         wb_command_print_json(root);
@@ -120,5 +108,5 @@ int wb_info_file(const struct wb_info_options *options, enum wb_file_kind kind)
         printf("next    %s\n", wb_text_string(&next));
     }
     wb_text_release(&next);
-    return code;
+    return wb_command_exit(status);
 }

@@ -390,9 +390,8 @@ static enum wb_status test_sample(struct run *run, int number, int sample, const
         virtual->settings.seed++;
     const enum wb_status status = wb_record_test_run(&test, &run->views, virtual, &result, &code);
     free(earlier);
-    if (status != WB_OK)
-        return WB_OK; /* already reported; the same specimen is asked for again */
-    if (!result.recorded)
+    /* An error is already reported; the same specimen is asked for again. */
+    if (status != WB_OK || !result.recorded)
         return WB_OK;
     wb_record_test_print(stderr, &result, file);
     return settle(run, number, path);
@@ -400,7 +399,7 @@ static enum wb_status test_sample(struct run *run, int number, int sample, const
 
 static enum wb_status next_test(struct run *run, int sample, int n_done)
 {
-    char question[1024], answer[ANSWER], file[WB_SERIES_FILE], notes[ANSWER];
+    char answer[ANSWER], file[WB_SERIES_FILE], notes[ANSWER];
     struct wb_text specimen = {0};
     int number;
     enum wb_status status = WB_OK;
@@ -409,9 +408,8 @@ static enum wb_status next_test(struct run *run, int sample, int n_done)
     fprintf(stderr, "\n%s, specimen %d of %d: sample %d of %s, %g mm, recording %s\n",
             run->series.name, n_done + 1, run->series.n_specimens, sample, run->series.like.wire,
             run->series.like.length / WB_MM, file);
-    snprintf(question, sizeof question,
-             "Mount it with the strand slack, then press Enter; q: stop here> ");
-    if (ask_questions(run, sample, &specimen, notes) && ask(run, answer, question)) {
+    if (ask_questions(run, sample, &specimen, notes) &&
+        ask(run, answer, "Mount it with the strand slack, then press Enter; q: stop here> ")) {
         if (strcmp(answer, "q") == 0)
             run->is_over = true;
         else
