@@ -300,18 +300,6 @@ static void print_paper_finding(const struct options *o, const struct wb_calibra
     wb_finding_print(&finding);
 }
 
-static enum wb_status calibrate_by_paper(struct options *o, struct wb_calibrate_result *result)
-{
-    struct wb_progress progress;
-    o->settings.progress = report_beam_runs;
-    o->settings.progress_context = &progress;
-    wb_progress_start(&progress, "calibrate", "beam runs", 0.0);
-    const enum wb_status status =
-        wb_calibrate_run(result, o->datasets.pointers, o->datasets.n, &o->settings, NULL);
-    wb_progress_finish(&progress);
-    return status;
-}
-
 static int deliver_paper(const struct options *o, const struct wb_calibrate_result *result)
 {
     if (o->common.output) {
@@ -336,27 +324,19 @@ static int deliver_paper(const struct options *o, const struct wb_calibrate_resu
 static int run_paper(struct options *o)
 {
     struct wb_calibrate_result result = {0};
-    const enum wb_status status = calibrate_by_paper(o, &result);
+    struct wb_progress progress;
+    o->settings.progress = report_beam_runs;
+    o->settings.progress_context = &progress;
+    wb_progress_start(&progress, "calibrate", "beam runs", 0.0);
+    const enum wb_status status =
+        wb_calibrate_run(&result, o->datasets.pointers, o->datasets.n, &o->settings, NULL);
+    wb_progress_finish(&progress);
     const int code = status == WB_OK ? deliver_paper(o, &result) : wb_command_exit(status);
     wb_calibrate_result_release(&result);
     return code;
 }
 
 /* --- whole cycles --- */
-
-static enum wb_status calibrate_on_cycles(struct options *o)
-{
-    struct wb_cycle_calibrate_settings *const settings = &o->cycle.settings;
-    struct wb_progress progress;
-    settings->progress = wb_calibrate_report;
-    settings->progress_context = &progress;
-    wb_progress_start(&progress, "calibrate", "fits", 2.0 * o->datasets.n);
-    const enum wb_status status =
-        wb_cycle_check_calibrate(&o->cycle.calibration, &o->cycle.remarks, o->datasets.pointers,
-                                 o->datasets.n, settings, NULL);
-    wb_progress_finish(&progress);
-    return status;
-}
 
 /* Only beside a YAML file: /dev/stdout has no place beside it, and an output that ends in .svg
  * would be overwritten by its figure. */
@@ -419,14 +399,21 @@ static int deliver_cycle(const struct options *o)
 
 static int run_cycle(struct options *o)
 {
-    const enum wb_status status = calibrate_on_cycles(o);
-    int code = wb_command_exit(status);
+    struct wb_cycle_calibrate_settings *const settings = &o->cycle.settings;
+    struct wb_cycle_calibration *const calibration = &o->cycle.calibration;
+    struct wb_progress progress;
+    int code = WB_EXIT_FAILED;
+    settings->progress = wb_calibrate_report;
+    settings->progress_context = &progress;
+    wb_progress_start(&progress, "calibrate", "fits", 2.0 * o->datasets.n);
+    const enum wb_status status = wb_cycle_check_calibrate(
+        calibration, &o->cycle.remarks, o->datasets.pointers, o->datasets.n, settings, NULL);
+    wb_progress_finish(&progress);
     if (status == WB_OK) {
-        o->cycle.verdict =
-            wb_cycle_verdict(&o->cycle.calibration, &o->cycle.remarks, &o->cycle.settings);
+        o->cycle.verdict = wb_cycle_verdict(calibration, &o->cycle.remarks, settings);
         code = deliver_cycle(o);
     }
-    wb_cycle_calibrate_release(&o->cycle.calibration);
+    wb_cycle_calibrate_release(calibration);
     return code;
 }
 

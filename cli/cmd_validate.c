@@ -521,6 +521,22 @@ static int deliver(const struct options *o, const struct wb_properties *properti
     return complete ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
+static int run(struct options *o, struct groups *groups)
+{
+    struct wb_properties properties;
+    if (wb_file_kind_check(o->common.input, WB_FILE_BIT(WB_FILE_PROPERTIES)) != WB_OK ||
+        wb_properties_read(o->common.input, &properties) != WB_OK ||
+        wb_datasets_read(&o->datasets, o->common.inputs + 1, o->common.n - 1,
+                         WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT)) !=
+            WB_OK)
+        return WB_EXIT_FAILED;
+    if (has_foreign_option(o))
+        return WB_EXIT_USAGE;
+    if (run_groups(o, &properties, groups) != WB_OK)
+        return WB_EXIT_FAILED;
+    return deliver(o, &properties, groups);
+}
+
 int wb_cmd_validate(int argc, char **argv)
 {
     static const struct wb_settings_command command = {
@@ -532,27 +548,12 @@ int wb_cmd_validate(int argc, char **argv)
     };
     struct options options = {
         .common = {.noun = "the properties and at least one dataset", .least = 2}};
-    struct wb_properties properties;
     struct groups groups = {0};
     wb_calibrate_default_settings(&options.settings);
     wb_setting_fill(&wb_three_point_calibrate_tables[0], &options.three_point.data);
     wb_setting_fill(&wb_three_point_calibrate_tables[1], &options.three_point.fit);
     wb_settings_parse(&command, argc, argv, &options);
-
-    enum wb_status status =
-        wb_file_kind_check(options.common.input, WB_FILE_BIT(WB_FILE_PROPERTIES));
-    if (status == WB_OK)
-        status = wb_properties_read(options.common.input, &properties);
-    if (status == WB_OK)
-        status =
-            wb_datasets_read(&options.datasets, options.common.inputs + 1, options.common.n - 1,
-                             WB_TEST_BIT(WB_TEST_CANTILEVER) | WB_TEST_BIT(WB_TEST_THREE_POINT));
-    const bool is_misused = status == WB_OK && has_foreign_option(&options);
-    if (status == WB_OK && !is_misused)
-        status = run_groups(&options, &properties, &groups);
-    const int code = is_misused        ? WB_EXIT_USAGE
-                     : status == WB_OK ? deliver(&options, &properties, &groups)
-                                       : wb_command_exit(status);
+    const int code = run(&options, &groups);
     for (int i = 0; i < groups.n; i++) {
         wb_validate_result_release(&groups.items[i].result);
         wb_validate_three_point_release(&groups.items[i].three_point);
