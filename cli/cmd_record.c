@@ -278,24 +278,24 @@ static void print_result(const struct wb_bend_test_result *result, const char *o
     char *text = NULL;
     size_t size;
     FILE *const memory = open_memstream(&text, &size);
-    if (memory) {
-        wb_record_test_print(memory, result, output);
-        if (results->n > 0) {
-            const struct wb_series_test *const test = &results->tests[0];
-            struct wb_finding finding = {.figure = figure};
-            struct wb_text table = {0};
-            wb_series_results_append(results, &table);
-            /* Without the rows of means, which one test does not have. */
-            const char *const all = wb_text_string(&table), *const means = strstr(all, "\nmean ");
-            fprintf(memory, "%.*s\n", means ? (int)(means - all) : (int)strlen(all), all);
-            wb_text_release(&table);
-            append_found(&finding.found, result, test);
-            append_trust(&finding.trust, result, test, code);
-            append_next(&finding.next, result, test, output);
-            wb_finding_write(memory, &finding);
-        }
+    if (!memory)
+        return;
+    wb_record_test_print(memory, result, output);
+    if (results->n > 0) {
+        const struct wb_series_test *const test = &results->tests[0];
+        struct wb_finding finding = {.figure = figure};
+        struct wb_text table = {0};
+        wb_series_results_append(results, &table);
+        /* Without the rows of means, which one test does not have. */
+        const char *const all = wb_text_string(&table), *const means = strstr(all, "\nmean ");
+        fprintf(memory, "%.*s\n", means ? (int)(means - all) : (int)strlen(all), all);
+        wb_text_release(&table);
+        append_found(&finding.found, result, test);
+        append_trust(&finding.trust, result, test, code);
+        append_next(&finding.next, result, test, output);
+        wb_finding_write(memory, &finding);
     }
-    if (memory && fclose(memory) == 0)
+    if (fclose(memory) == 0)
         wb_live_line_print(text);
     free(text);
 }

@@ -56,25 +56,19 @@ static int list_datasets(const char *folder, char *text, size_t size)
     return n;
 }
 
-static enum wb_status check_kind(const char *name)
+static enum wb_status check_name(const char *name)
 {
+    char held[1024];
+    const bool is_other_folder = wb_file_is_folder(name) && !is_dataset(name);
+    const int n = is_other_folder ? list_datasets(name, held, sizeof held) : 0;
+    if (n > 0)
+        return wb_fail(WB_ERR_FORMAT, "'%s' contains %s: %s; name the datasets themselves", name,
+                       n == 1 ? "a dataset" : "several datasets", held);
     WB_TRY(wb_file_kind_check(name, WB_FILE_BIT(WB_FILE_DATASET)));
     if (is_dataset(name))
         return WB_OK;
     return wb_fail(WB_ERR_FORMAT, "'%s' %s, expected a dataset: a folder with dataset.json", name,
                    wb_file_exists(name) ? "is of unknown kind" : "does not exist");
-}
-
-static enum wb_status check_name(const char *name)
-{
-    char held[1024];
-    if (!wb_file_is_folder(name) || is_dataset(name))
-        return check_kind(name);
-    const int n = list_datasets(name, held, sizeof held);
-    if (n > 0)
-        return wb_fail(WB_ERR_FORMAT, "'%s' contains %s: %s; name the datasets themselves", name,
-                       n == 1 ? "a dataset" : "several datasets", held);
-    return check_kind(name);
 }
 
 enum wb_status wb_datasets_read(struct wb_datasets *datasets, const char *const *names, int n,

@@ -2,7 +2,6 @@
  * written as a properties file in memory and parsed, so that it equals that of reading the
  * command's file. */
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,7 +26,7 @@ struct job {
     struct wb_calibrate_settings paper;
     struct wb_cycle_calibrate_settings cycle;
     struct wb_three_point_calibrate_settings three_point;
-    char missing[256]; /* what is missing in the result; "" */
+    const char *missing; /* what is missing in the result; NULL: nothing */
 };
 
 static bool report(void *context, int done, int all)
@@ -99,11 +98,6 @@ static enum wb_status prepare(struct job *job)
 
 /* --- methods --- */
 
-static void set_missing(struct job *job, const char *text)
-{
-    snprintf(job->missing, sizeof job->missing, "%s", text);
-}
-
 static enum wb_status run_paper(struct job *job, struct wb_text *text)
 {
     struct wb_calibrate_result result = {0};
@@ -114,7 +108,7 @@ static enum wb_status run_paper(struct job *job, struct wb_text *text)
     for (int i = 0; i < n; i++)
         wb_call_warn(remarks[i]);
     if (!wb_calibrate_is_complete(result.end))
-        set_missing(job, wb_calibrate_end_text(result.end));
+        job->missing = wb_calibrate_end_text(result.end);
     wb_calibrate_result_release(&result);
     return WB_OK;
 }
@@ -132,16 +126,14 @@ static enum wb_status run_cycle(struct job *job, struct wb_text *text)
             wb_cycle_verdict(&calibration, remarks, &job->cycle);
         wb_properties_format_cycle(text, &calibration, &job->cycle, job->origins, job->n);
         if (verdict.has[WB_CYCLE_STOPPED])
-            set_missing(job,
-                        "stopped before all laws were fitted: the hardening rule is undecided");
+            job->missing = "stopped before all laws were fitted: the hardening rule is undecided";
         else if (verdict.has[WB_CYCLE_NOT_CONVERGED])
-            set_missing(job,
-                        "the iterations were exhausted for a specimen (option fit-iterations)");
+            job->missing = "the iterations were exhausted for a specimen (option fit-iterations)";
         else if (verdict.has[WB_CYCLE_NO_LAW_FITS])
-            set_missing(job, "no law fits loading and unloading (hardening_rule in the properties "
-                             "has the misfits)");
+            job->missing = "no law fits loading and unloading (hardening_rule in the properties "
+                           "has the misfits)";
         else if (verdict.has[WB_CYCLE_UNCERTAIN])
-            set_missing(job, "the uncertainty of a value exceeds the limit (option at-most)");
+            job->missing = "the uncertainty of a value exceeds the limit (option at-most)";
     }
     free(remarks);
     wb_cycle_calibrate_release(&calibration);
@@ -157,10 +149,9 @@ static enum wb_status run_three_point(struct job *job, struct wb_text *text)
         wb_properties_format_three_point(text, &calibration, job->origins, job->n);
         for (int i = 0; i < calibration.n_members; i++) {
             if (!calibration.members[i].is_fitted)
-                set_missing(job, "not every test could be fitted");
+                job->missing = "not every test could be fitted";
             else if (!calibration.members[i].fit.is_converged)
-                set_missing(job,
-                            "the iterations were exhausted for a test (option curve-iterations)");
+                job->missing = "the iterations were exhausted for a test (option curve-iterations)";
         }
     }
     wb_three_point_calibrate_release(&calibration);
@@ -233,6 +224,6 @@ enum wirebench_status wirebench_calibrate(struct wirebench_properties **out,
         *out = properties;
     else
         wirebench_properties_destroy(properties);
-    return status == WB_OK && job.missing[0] ? wb_call_end_incomplete("%s", job.missing)
-                                             : wb_call_end(status);
+    return status == WB_OK && job.missing ? wb_call_end_incomplete("%s", job.missing)
+                                          : wb_call_end(status);
 }
