@@ -43,20 +43,19 @@ static const struct argp_option other_options[] = {
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
-    switch (key) {
-    case KEY_CURVATURE:
+    if (key == KEY_CURVATURE) {
         if (!wb_number_parse(argument, &o->largest_curvature) || !(o->largest_curvature >= 0.001) ||
             !(o->largest_curvature <= 1e6))
             argp_error(state, "--largest-curvature: expected a number from 0.001 to 1e6, not '%s'",
                        argument);
         return 0;
-    case ARGP_KEY_END:
+    }
+    if (key == ARGP_KEY_END) {
         if (!o->conductor || !(o->layers.conductor_diameter > 0.0))
             argp_error(state, "the conductor is missing: --conductor MATERIAL "
                               "--conductor-diameter-mm D");
         if ((o->jacket != NULL) != (o->layers.outer_diameter > 0.0))
             argp_error(state, "--jacket and --outer-diameter-mm must be given together");
-        break;
     }
     return wb_command_parse_common(key, argument, state);
 }

@@ -16,9 +16,7 @@ struct options {
     double within; /* 0: not given */
 };
 
-enum {
-    KEY_WITHIN = WB_KEY_OWN
-};
+#define KEY_WITHIN WB_KEY_OWN
 
 static const double least_within = 1e-4, most_within = 2.0;
 
@@ -35,19 +33,18 @@ static const struct argp_option option_table[] = {
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
-    switch (key) {
-    case KEY_WITHIN:
+    if (key == KEY_WITHIN) {
         if (!wb_number_parse(argument, &o->within) ||
             !(o->within >= least_within && o->within <= most_within))
             argp_error(state, "--within: expected a number from %g to %g, not '%s'", least_within,
                        most_within, argument);
         return 0;
-    case ARGP_KEY_END:
+    }
+    if (key == ARGP_KEY_END) {
         if (o->common.n > WB_COMPARE_SIDES)
             argp_error(state, "expected two properties files, not %d", o->common.n);
         if (o->common.n == WB_COMPARE_SIDES && !(o->within > 0.0))
             argp_error(state, "equivalence limit missing: --within X");
-        break;
     }
     return wb_command_parse_common(key, argument, state);
 }

@@ -58,18 +58,15 @@ static void check_words(const struct options *options, struct argp_state *state)
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const options = state->input;
-    switch (key) {
-    case ARGP_KEY_ARG:
+    if (key == ARGP_KEY_ARG) {
         if (options->n_words == WORDS)
             argp_error(state, "too many arguments: '%s'", argument);
         options->words[options->n_words++] = argument;
         return 0;
-    case ARGP_KEY_END:
-        check_words(options, state);
-        return 0;
-    default:
-        return wb_command_parse_common(key, argument, state);
     }
+    if (key == ARGP_KEY_END)
+        check_words(options, state);
+    return wb_command_parse_common(key, argument, state);
 }
 
 static const struct argp argp = {

@@ -118,17 +118,13 @@ static void check(struct argp_state *state, const struct wb_solve_settings *s)
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
-
-    switch (key) {
-    case ARGP_KEY_ARG:
+    if (key == ARGP_KEY_ARG) {
         take_argument(state, argument, &o->settings);
         return 0;
-    case ARGP_KEY_END:
-        check(state, &o->settings);
-        return 0;
-    default:
-        return wb_command_parse_common(key, argument, state);
     }
+    if (key == ARGP_KEY_END)
+        check(state, &o->settings);
+    return wb_command_parse_common(key, argument, state);
 }
 
 /* The texts of --help before and after the options, of the kind of index `only` or of all (-1). */

@@ -64,8 +64,7 @@ static void check_words(const struct wb_stage_options *options, struct argp_stat
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct wb_stage_options *const options = state->input;
-    switch (key) {
-    case ARGP_KEY_ARG:
+    if (key == ARGP_KEY_ARG) {
         if (!options->rig_path)
             options->rig_path = argument;
         else if (!options->action)
@@ -75,12 +74,10 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         else
             argp_error(state, "unexpected argument '%s'", argument);
         return 0;
-    case ARGP_KEY_END:
-        check_words(options, state);
-        return 0;
-    default:
-        return wb_command_parse_common(key, argument, state);
     }
+    if (key == ARGP_KEY_END)
+        check_words(options, state);
+    return wb_command_parse_common(key, argument, state);
 }
 
 static const struct argp argp = {
