@@ -1,7 +1,6 @@
 /* wirebench calibrate --compliance: compliance of a machine, from tests of a stiff bar. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "analysis/calibration/three_point/machine_compliance.h"
 #include "base/circle.h"

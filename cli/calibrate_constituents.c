@@ -1,8 +1,6 @@
 /* wirebench calibrate --constituents: a wire computed from its constituents. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "analysis/calibration/constituents/layers.h"
 #include "base/circle.h"

@@ -5,8 +5,6 @@
 
 #include "analysis/calibration/constituents/tensile.h"
 #include "analysis/calibration/constituents/tensile_material.h"
-#include "base/file.h"
-#include "base/number.h"
 #include "base/units.h"
 #include "cli/calibrate.h"
 #include "cli/command.h"

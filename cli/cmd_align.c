@@ -7,7 +7,6 @@
 #include "base/file.h"
 #include "base/interrupt.h"
 #include "base/memory.h"
-#include "base/units.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
 #include "cli/file_kind.h"

@@ -1,11 +1,8 @@
 /* wirebench rig: runs the virtual rig until it is interrupted. */
-#include <errno.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/file.h"
 #include "base/interrupt.h"

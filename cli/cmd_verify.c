@@ -1,7 +1,6 @@
 /* wirebench verify: checks recordings for missing or damaged data. */
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/file_kind.h"

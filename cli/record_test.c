@@ -8,7 +8,6 @@
 #include "base/config.h"
 #include "base/interrupt.h"
 #include "base/text.h"
-#include "base/timing.h"
 #include "base/units.h"
 #include "cli/command.h"
 #include "cli/live_line.h"

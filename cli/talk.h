@@ -9,7 +9,6 @@
 #define WB_CLI_TALK_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
 /* Starts on the descriptor of stderr or stdout, with an empty buffer and no losses. */
 void wb_talk_open(int descriptor);

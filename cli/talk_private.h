@@ -2,6 +2,8 @@
 #ifndef WB_CLI_TALK_PRIVATE_H
 #define WB_CLI_TALK_PRIVATE_H
 
+#include <stdint.h>
+
 #include "cli/talk.h"
 
 /* Texts dropped since wb_talk_open(). */

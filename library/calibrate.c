@@ -3,7 +3,6 @@
  * command's file. */
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "analysis/calibration/cycle/cycle_verdict.h"
 #include "analysis/calibration/properties/method.h"

@@ -8,7 +8,6 @@
 #ifndef WB_LIBRARY_CALL_H
 #define WB_LIBRARY_CALL_H
 
-#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/columns.h"

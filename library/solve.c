@@ -1,7 +1,6 @@
 /* Simulated tests of the library: the 1D beam through the caller's deflections. */
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 
 #include "fe/trial/cantilever.h"
 #include "fe/trial/three_point_bending.h"
