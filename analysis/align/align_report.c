@@ -1,5 +1,5 @@
 /* Writes corrections, checks, warnings and provenance into dataset.json. */
-
+#include <math.h>
 
 #include "analysis/align/align_keys.h"
 #include "analysis/align/align_private.h"
