@@ -442,6 +442,17 @@ static void add_to_span(struct span *span, double rms)
     span->high = fmax(span->high, rms);
 }
 
+/* "0.5 to 2.3 %", or "0.5 %" where both ends are the same. */
+static const char *span_words(const struct span *span, char words[32])
+{
+    char low[12], high[12];
+    snprintf(low, sizeof low, "%.1f", span->low / WB_PERCENT);
+    snprintf(high, sizeof high, "%.1f", span->high / WB_PERCENT);
+    const bool is_one = strcmp(low, high) == 0;
+    snprintf(words, 32, "%s%s%s %%", low, is_one ? "" : " to ", is_one ? "" : high);
+    return words;
+}
+
 static bool has_unloading(const struct wb_validate_result *p)
 {
     return p && p->cycles.n_samples > 0 && isfinite(p->cycles.rms);
@@ -451,6 +462,7 @@ static bool has_unloading(const struct wb_validate_result *p)
 static void add_method(struct wb_found *found, const struct wb_recordings_results *results)
 {
     struct span cycle = {(double)NAN, (double)NAN}, paper = cycle;
+    char words[2][32];
     for (int i = 0; i < results->n_wires; i++) {
         const struct wb_recordings_results_wire *const wire = &results->wires[i];
         const struct wb_validate_result *const by_cycle = wb_recordings_results_prediction(wire);
@@ -462,15 +474,14 @@ static void add_method(struct wb_found *found, const struct wb_recordings_result
         add_to_span(&paper, by_paper->cycles.rms);
     }
     if (isfinite(cycle.low))
-        wb_found_say(found, WB_FOUND_NEXT,
-                     "<b>Method</b>: %s. The law of loading and unloading predicts the unloading "
-                     "with an RMS error of %.1f to %.1f %% of <i>F</i><sub>max</sub>, the paper's "
-                     "route, which is fitted to the loading alone, of %.1f to %.1f %%.",
-                     cycle.high <= paper.high
-                         ? "use the law of loading and unloading"
-                         : "neither law predicts the unloading better for all wires",
-                     cycle.low / WB_PERCENT, cycle.high / WB_PERCENT, paper.low / WB_PERCENT,
-                     paper.high / WB_PERCENT);
+        wb_found_say(
+            found, WB_FOUND_NEXT,
+            "<b>Method</b>: %s. The law of loading and unloading predicts the unloading "
+            "with an RMS error of %s of <i>F</i><sub>max</sub>, the paper's route, which is "
+            "fitted to the loading alone, of %s.",
+            cycle.high <= paper.high ? "use the law of loading and unloading"
+                                     : "neither law predicts the unloading better for all wires",
+            span_words(&cycle, words[0]), span_words(&paper, words[1]));
     else if (!results->campaign->whole_cycle)
         wb_found_say(found, WB_FOUND_NEXT,
                      "<b>Method</b>: set <tt>whole_cycle: true</tt> in the campaign to calibrate "
