@@ -315,6 +315,7 @@ struct wirebench_properties_info {
     int is_combined;
     struct wirebench_back backs[WIREBENCH_MOST_BACKS];
     double law_youngs_modulus, law_yield_stress;
+    struct wirebench_estimate deflection_springback; /* of a cantilever of the tests' length, 1 */
 };
 
 /* Creates properties from a law. */

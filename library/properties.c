@@ -172,6 +172,7 @@ enum wirebench_status wirebench_properties_describe(const struct wirebench_prope
         .is_combined = law->is_combined,
         .law_youngs_modulus = law->material.youngs_modulus,
         .law_yield_stress = law->material.yield_stress,
+        .deflection_springback = estimate(&p->springback),
     };
     for (int i = 0; i < 4; i++)
         mine.deviation[i] = p->deviation[i];

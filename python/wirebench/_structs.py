@@ -77,7 +77,8 @@ PropertiesInfo = _struct("PropertiesInfo", _SIZE, ("wire", c.c_char_p), ("method
                          *_doubles("kinematic_share rms largest_curvature"),
                          ("rigidity", Estimate), ("residual_curvature_ratio", Estimate),
                          *_ints("n_samples is_rule_supported is_virtual is_simulation"),
-                         *_CHABOCHE, *_doubles("law_youngs_modulus law_yield_stress"))
+                         *_CHABOCHE, *_doubles("law_youngs_modulus law_yield_stress"),
+                         ("deflection_springback", Estimate))
 
 Bending = _struct("Bending", _SIZE, *_doubles("rigidity residual_curvature_ratio loop_energy"))
 

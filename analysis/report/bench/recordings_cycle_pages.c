@@ -495,6 +495,8 @@ static void put_answer(struct wb_document *document, const struct wb_recordings_
         wb_recordings_cycle_append(&text, "; residual curvature ratio",
                                    WB_QUANTITY_RESIDUAL_CURVATURE_RATIO,
                                    &c->residual_curvature_ratio);
+        wb_recordings_cycle_append(&text, "; springback of the deflection", WB_QUANTITY_SPRINGBACK,
+                                   &c->springback);
         wb_recordings_cycle_append(&text, "; loop energy", WB_QUANTITY_LOOP_ENERGY,
                                    &c->loop_energy);
         wb_text_append(&text, ", bent to %.1f /m and back.", c->largest_curvature);
