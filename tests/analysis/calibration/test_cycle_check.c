@@ -470,10 +470,10 @@ static void an_outlying_specimen_is_reported(void **state)
     release(bench);
 }
 
-static void one_sample_is_noted(void **state)
+static void one_specimen_is_noted(void **state)
 {
     (void)state;
-    assert_told(good, WB_CHECK_NOTE, 0, "one sample");
+    assert_told(good, WB_CHECK_NOTE, 0, "one specimen");
     assert_no_doubt(good);
 }
 
@@ -614,7 +614,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(many_outliers_are_doubted),
         cmocka_unit_test(a_misfit_is_reported),
         cmocka_unit_test(an_outlying_specimen_is_reported),
-        cmocka_unit_test(one_sample_is_noted),
+        cmocka_unit_test(one_specimen_is_noted),
         cmocka_unit_test(good_specimens_are_not_doubted),
         cmocka_unit_test(relaxation_at_rest_is_reported),
         cmocka_unit_test(a_held_test_is_doubted_but_not_one_held_at_rest),
