@@ -245,7 +245,7 @@ static void print_text(const struct options *o, const struct wb_calibrate_result
     else
         printf("(over F_max = %.4g N of the measured average)\n", r->max_force);
     if (r->n_samples == 1)
-        printf("one sample: no uncertainty\n");
+        printf("one specimen: no uncertainty\n");
     else
         printf("scatter between specimens %.3g, of which %.3g is not due to their natural shapes\n",
                r->scatter_rms, r->residual_scatter_rms);

@@ -111,7 +111,7 @@ expect 2 "unknown command 'xyz'" "$wirebench" xyz
 # One sample has no scatter, and numbers come without exponents.
 # shellcheck disable=SC2086
 "$wirebench" calibrate L85 $quick >said || fail 'calibrate'
-grep -q '^one sample: no uncertainty$' said || fail "one sample: $(cat said)"
+grep -q '^one specimen: no uncertainty$' said || fail "one specimen: $(cat said)"
 grep -qE '^(E|sigma_Y|K|n) .*e[-+]' said && fail "exponents: $(cat said)"
 "$wirebench" calibrate --help | grep -q 'Mandatory or optional' && fail 'argp speaks of long options'
 
