@@ -205,7 +205,7 @@ static void print_value(const char *name, double value, double deviation, const 
 static void print_text(const struct options *o, const struct wb_calibrate_result *r)
 {
     const struct wb_calibrate_settings *const s = &o->settings;
-    printf("wire %s, L = %g mm, %d sample%s%s%s\n", r->info.wire, r->info.length / WB_MM,
+    printf("wire %s, L = %g mm, %d specimen%s%s%s\n", r->info.wire, r->info.length / WB_MM,
            r->n_samples, r->n_samples == 1 ? "" : "s",
            r->info.is_virtual      ? ", virtual rig"
            : r->info.is_simulation ? ", simulation"
