@@ -39,14 +39,6 @@ void wb_law_init_parallel(struct wb_law *law, const struct wb_law_part *parts, i
     }
 }
 
-void wb_law_init_combined(struct wb_law *law, const struct wb_material *material,
-                          double isotropic_share)
-{
-    wb_law_init_ludwik(law, material);
-    law->isotropic_share = isotropic_share;
-    law->is_combined = true;
-}
-
 void wb_law_init_chaboche(struct wb_law *law, const struct wb_material *material, double saturation,
                           double rate, const struct wb_law_back *backs, int n_backs)
 {

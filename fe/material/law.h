@@ -37,7 +37,6 @@
 #define WB_FE_MATERIAL_LAW_H
 
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "base/reason.h"
 #include "base/status.h"
@@ -109,10 +108,6 @@ void wb_law_init_ludwik(struct wb_law *law, const struct wb_material *material);
 /* Parallel parts; E becomes the sum of the moduli. */
 void wb_law_init_parallel(struct wb_law *law, const struct wb_law_part *parts, int n,
                           double isotropic_share, double poissons_ratio);
-
-/* Ludwik's law with combined hardening. */
-void wb_law_init_combined(struct wb_law *law, const struct wb_material *material,
-                          double isotropic_share);
 
 /* Chaboche's law; of `material` E, Poisson's ratio and the yield stress count. */
 void wb_law_init_chaboche(struct wb_law *law, const struct wb_material *material, double saturation,

@@ -5,8 +5,6 @@
 #include "base/number.h"
 #include "base/units.h"
 
-#define WB_LOG_DOMAIN "law"
-
 enum rule {
     ISOTROPIC,
     KINEMATIC,

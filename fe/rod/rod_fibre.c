@@ -7,7 +7,7 @@ enum {
 };
 
 /* Relative distance to the yield surface below which a fibre counts as elastic; see
- * fe/material/material.c. */
+ * fe/solid/solid_point.c. */
 static const double on_surface = 1e-12;
 
 /* Newton's method converges quadratically: after a step of this relative size the error is

@@ -10,8 +10,8 @@ static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 static const int row_of[6] = {0, 1, 2, 0, 1, 2};
 static const int column_of[6] = {0, 1, 2, 1, 2, 0};
 
-/* Relative distance to the yield surface below which a point counts as elastic; see
- * fe/material/material.c. */
+/* Relative distance to the yield surface below which a point counts as elastic: a point that was
+ * returned to the surface and did not move since must not see the plastic tangent by round-off. */
 static const double on_surface = 1e-12;
 
 /* Result of a return mapping: T = trial - 2 mu sqrt(3/2) increment n, and its tangent 2 mu (shrink

@@ -1,5 +1,5 @@
 #include "tests/twin/fibres_twin.h"
-#include "fe/material/material_private.h"
+#include "tests/twin/material_stress.h"
 
 void wb_fibres_twin_respond(const struct wb_section *section, double eps, double kappa,
                             const struct wb_material_state *before, struct wb_material_state *after,

@@ -1,7 +1,7 @@
 /* The sheet's material point in plane stress. */
-#include "fe/material/material_private.h"
 #include "tests/check.h"
 #include "tests/twin/bundle_static_sheet.h"
+#include "tests/twin/material_stress.h"
 
 /* The paper's tape. */
 static const struct wb_bundle_static_sheet tape = {

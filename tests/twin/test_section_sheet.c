@@ -4,9 +4,9 @@
 
 #include <stdlib.h>
 
-#include "fe/material/material_private.h"
 #include "tests/check.h"
 #include "tests/twin/bundle_static_sheet.h"
+#include "tests/twin/material_stress.h"
 
 /* The paper's tape. */
 static const struct wb_material tape = {

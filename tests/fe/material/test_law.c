@@ -179,7 +179,9 @@ static void what_makes_no_combined_law_is_refused(void **unused)
     assert_int_equal(wb_law_check(&law, NULL), WB_ERR_ARGUMENT);
     /* One surface gives no work back, however its growth steepens. */
     const struct wb_material steepens = ludwik(5000, 4, 3000, 1.2);
-    wb_law_init_combined(&law, &steepens, 0.5);
+    wb_law_init_ludwik(&law, &steepens);
+    law.isotropic_share = 0.5;
+    law.is_combined = true;
     assert_int_equal(wb_law_check(&law, NULL), WB_OK);
 }
 
@@ -196,7 +198,9 @@ static void rules_have_names(void **unused)
     assert_string_equal(wb_law_rule_name(&law), "isotropic");
     assert_false(wb_law_is_plain(&law));
     const struct wb_material m = ludwik(5000, 4, 3000, 0.8);
-    wb_law_init_combined(&law, &m, 1.0);
+    wb_law_init_ludwik(&law, &m);
+    law.isotropic_share = 1.0;
+    law.is_combined = true;
     assert_string_equal(wb_law_rule_name(&law), "combined");
     assert_false(wb_law_is_plain(&law) || wb_law_is_overlay(&law));
     assert_true(wb_law_has_share(&law));

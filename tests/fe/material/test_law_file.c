@@ -78,7 +78,9 @@ static void combined_hardening_reads_back_the_same(void **unused)
         if (i < 3) {
             wb_law_init_chaboche(&law, &elastic, 1.4e6 / 3.0, 1000.0 / 3.0, backs, i);
         } else if (i == 3) {
-            wb_law_init_combined(&law, &ludwik, 1.0 / 3.0);
+            wb_law_init_ludwik(&law, &ludwik);
+            law.isotropic_share = 1.0 / 3.0;
+            law.is_combined = true;
         } else {
             wb_law_init_parallel(&law, parts, 2, 1.0 / 7.0, ludwik.poissons_ratio);
             law.is_combined = true;

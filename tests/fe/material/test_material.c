@@ -1,7 +1,7 @@
 #include "fe/material/material.h"
-#include "fe/material/material_private.h"
 
 #include "tests/check.h"
+#include "tests/twin/material_stress.h"
 
 static const struct wb_material copper = {
     WB_HARDENING_ISOTROPIC_POWER, 5000e6, 0.39, 4e6, 900e6, 0.7};

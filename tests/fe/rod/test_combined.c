@@ -22,7 +22,9 @@ static struct wb_law combined(double share)
     const struct wb_material m = {
         WB_HARDENING_ISOTROPIC_POWER, 5641.0 * WB_MPA, 0.39, 4.95 * WB_MPA, 850.0 * WB_MPA, 0.78};
     struct wb_law law;
-    wb_law_init_combined(&law, &m, share);
+    wb_law_init_ludwik(&law, &m);
+    law.isotropic_share = share;
+    law.is_combined = true;
     return law;
 }
 

@@ -2,8 +2,8 @@
  * differences and the rate equations. */
 #include "fe/rod/rod_fibre.h"
 
-#include "fe/material/material_private.h"
 #include "tests/fe/rod/wires.h"
+#include "tests/twin/material_stress.h"
 #include "tests/twin/rod_fibre_twin.h"
 
 static const struct wb_material copper = {

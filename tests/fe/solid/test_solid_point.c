@@ -2,9 +2,9 @@
 
 #include <stdlib.h>
 
-#include "fe/material/material_private.h"
 #include "tests/check.h"
 #include "tests/fe/solid/solid_point_twin.h"
+#include "tests/twin/material_stress.h"
 
 static const struct wb_material elastic = {WB_HARDENING_NONE_ELASTIC, 70e9, 0.34, 0.0, 0.0, 0.0};
 static const struct wb_material power = {

@@ -1,10 +1,10 @@
 /* Tapes under load compared with closed forms: statics by dynamic relaxation, plastic flow, long
  * runs. */
 #include "fe/material/hardening.h"
-#include "fe/material/material_private.h"
 #include "fe/swept/swept_private.h"
 #include "fe/swept/swept_step.h"
 #include "tests/fe/swept/tapes.h"
+#include "tests/twin/material_stress.h"
 
 static const double E = 119e6, nu = 0.3, h = 0.2e-3;
 
