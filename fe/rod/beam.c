@@ -30,6 +30,12 @@ struct strain {
     double eps, gamma;
 };
 
+/* The shape of the beam. */
+struct state {
+    struct wb_beam_node *nodes; /* (n_nodes) */
+    struct strain *strains;     /* (n_elements x POINTS) */
+};
+
 struct resultants {
     double N, Q, M, k; /* N, N, N m; t', 1/m */
 };
@@ -42,11 +48,9 @@ struct wb_beam {
     size_t history_size; /* of all Gauss points */
     double load_x, load_y;
 
-    /* Positions, (n_nodes) each; `earlier` is the state committed before `committed`. */
-    struct wb_beam_node *reference, *trial, *committed, *earlier, *saved, *saved_earlier;
-    /* Strains of the same states, (n_elements x POINTS) each. */
-    struct strain *trial_strain, *committed_strain, *earlier_strain, *saved_strain,
-        *saved_earlier_strain;
+    struct wb_beam_node *reference; /* (n_nodes) positions without stress */
+    /* `earlier` was committed before `committed`. */
+    struct state trial, committed, earlier, saved, saved_earlier;
     double *history, *trial_history, *saved_history;
     /* Resultants of the committed state, for the work of a step. */
     struct resultants *committed_resultants, *saved_resultants; /* (n_elements x POINTS) each */
@@ -104,9 +108,15 @@ static void measure_reference(struct wb_beam *beam)
             p->reference_a = p->a;
             p->reference_b = p->b;
             p->reference_k = p->k;
-            p->G = wb_fibres_shear_stiffness(beam->fibres);
         }
     }
+}
+
+/* The section's shear stiffness at the points. */
+static void take_shear_stiffness(struct wb_beam *beam)
+{
+    for (int g = 0; g < beam->n_elements * POINTS; g++)
+        beam->points[g].G = wb_fibres_shear_stiffness(beam->fibres);
 }
 
 static enum wb_status check_model(const struct wb_beam_model *model)
@@ -128,33 +138,22 @@ static enum wb_status check_model(const struct wb_beam_model *model)
 static void take_memory(struct wb_beam *beam)
 {
     const size_t nodes = (size_t)beam->n_nodes, elements = (size_t)beam->n_elements;
+    const size_t points = elements * POINTS;
+    struct state *const states[] = {&beam->trial, &beam->committed, &beam->earlier, &beam->saved,
+                                    &beam->saved_earlier};
+    double **const histories[] = {&beam->history, &beam->trial_history, &beam->saved_history};
 
+    for (size_t i = 0; i < sizeof states / sizeof states[0]; i++) {
+        states[i]->nodes = wb_memory_take(&beam->memory, nodes, sizeof *beam->reference);
+        states[i]->strains = wb_memory_take(&beam->memory, points, sizeof(struct strain));
+    }
+    for (size_t i = 0; i < sizeof histories / sizeof histories[0]; i++)
+        *histories[i] = wb_memory_take(&beam->memory, beam->history_size, sizeof(double));
     beam->reference = wb_memory_take(&beam->memory, nodes, sizeof *beam->reference);
-    beam->trial = wb_memory_take(&beam->memory, nodes, sizeof *beam->trial);
-    beam->committed = wb_memory_take(&beam->memory, nodes, sizeof *beam->committed);
-    beam->earlier = wb_memory_take(&beam->memory, nodes, sizeof *beam->earlier);
-    beam->saved = wb_memory_take(&beam->memory, nodes, sizeof *beam->saved);
-    beam->saved_earlier = wb_memory_take(&beam->memory, nodes, sizeof *beam->saved_earlier);
-    beam->trial_strain =
-        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->trial_strain);
-    beam->committed_strain =
-        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->committed_strain);
-    beam->earlier_strain =
-        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->earlier_strain);
-    beam->saved_strain =
-        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->saved_strain);
-    beam->saved_earlier_strain =
-        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->saved_earlier_strain);
-    beam->history = wb_memory_take(&beam->memory, beam->history_size, sizeof *beam->history);
-    beam->trial_history =
-        wb_memory_take(&beam->memory, beam->history_size, sizeof *beam->trial_history);
-    beam->saved_history =
-        wb_memory_take(&beam->memory, beam->history_size, sizeof *beam->saved_history);
     beam->committed_resultants =
-        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->committed_resultants);
-    beam->saved_resultants =
-        wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->saved_resultants);
-    beam->points = wb_memory_take(&beam->memory, elements * POINTS, sizeof *beam->points);
+        wb_memory_take(&beam->memory, points, sizeof *beam->committed_resultants);
+    beam->saved_resultants = wb_memory_take(&beam->memory, points, sizeof *beam->saved_resultants);
+    beam->points = wb_memory_take(&beam->memory, points, sizeof *beam->points);
     beam->residual = wb_memory_take(&beam->memory, nodes, sizeof *beam->residual);
     beam->middles = wb_memory_take(&beam->memory, elements, sizeof *beam->middles);
     beam->right_middles = wb_memory_take(&beam->memory, elements, sizeof *beam->right_middles);
@@ -206,33 +205,27 @@ enum wb_status wb_beam_set_curvature(struct wb_beam *beam,
 {
     set_reference_shape(beam, natural_curvature, context);
     measure_reference(beam);
+    take_shear_stiffness(beam);
     wb_beam_reset(beam);
     if (!isfinite(beam->reference[beam->n_nodes - 1].x))
         return wb_fail(WB_ERR_ARGUMENT, "the natural curvature is not finite everywhere");
     return WB_OK;
 }
 
-static void copy_nodes(const struct wb_beam *beam, struct wb_beam_node *to,
-                       const struct wb_beam_node *from)
+static void copy_state(const struct wb_beam *beam, const struct state *to, const struct state *from)
 {
-    memcpy(to, from, (size_t)beam->n_nodes * sizeof *to);
-}
-
-static void copy_strains(const struct wb_beam *beam, struct strain *to, const struct strain *from)
-{
-    memcpy(to, from, (size_t)(beam->n_elements * POINTS) * sizeof *to);
+    memcpy(to->nodes, from->nodes, (size_t)beam->n_nodes * sizeof *to->nodes);
+    memcpy(to->strains, from->strains, (size_t)(beam->n_elements * POINTS) * sizeof *to->strains);
 }
 
 void wb_beam_reset(struct wb_beam *beam)
 {
     const size_t points = (size_t)(beam->n_elements * POINTS);
-    memset(beam->trial_strain, 0, points * sizeof *beam->trial_strain);
-    memset(beam->committed_strain, 0, points * sizeof *beam->committed_strain);
-    memset(beam->earlier_strain, 0, points * sizeof *beam->earlier_strain);
-    copy_nodes(beam, beam->trial, beam->reference);
+    memset(beam->trial.strains, 0, points * sizeof *beam->trial.strains);
+    memcpy(beam->trial.nodes, beam->reference, (size_t)beam->n_nodes * sizeof *beam->reference);
     beam->has_turns = false;
-    copy_nodes(beam, beam->committed, beam->reference);
-    copy_nodes(beam, beam->earlier, beam->reference);
+    copy_state(beam, &beam->committed, &beam->trial);
+    copy_state(beam, &beam->earlier, &beam->trial);
     memset(beam->history, 0, beam->history_size * sizeof *beam->history);
     for (size_t i = 0; i < points; i++)
         beam->committed_resultants[i] = (struct resultants){.k = beam->points[i].reference_k};
@@ -241,16 +234,14 @@ void wb_beam_reset(struct wb_beam *beam)
 void wb_beam_set_materials(struct wb_beam *beam, const struct wb_material *materials)
 {
     wb_fibres_set_materials(beam->fibres, materials);
-    for (int g = 0; g < beam->n_elements * POINTS; g++)
-        beam->points[g].G = wb_fibres_shear_stiffness(beam->fibres);
+    take_shear_stiffness(beam);
 }
 
 enum wb_status wb_beam_set_law(struct wb_beam *beam, const struct wb_law *law)
 {
     WB_TRY(wb_law_check(law, NULL));
     WB_TRY(wb_fibres_set_law(beam->fibres, law));
-    for (int g = 0; g < beam->n_elements * POINTS; g++)
-        beam->points[g].G = wb_fibres_shear_stiffness(beam->fibres);
+    take_shear_stiffness(beam);
     return WB_OK;
 }
 
@@ -302,16 +293,16 @@ void wb_beam_evaluate(struct wb_beam *beam, double load_factor, struct wb_beam_b
             struct wb_fibres_response r;
 
             if (!beam->has_turns)
-                wb_beam_element_turn(&beam->shape, g, beam->trial + 2 * e, p);
-            p->k = wb_beam_element_curvature(&beam->shape, g, beam->trial + 2 * e);
-            p->a = p->reference_a + beam->trial_strain[at].eps;
-            p->b = p->reference_b + beam->trial_strain[at].gamma;
-            wb_fibres_respond(beam->fibres, beam->trial_strain[at].eps, p->k - p->reference_k,
+                wb_beam_element_turn(&beam->shape, g, beam->trial.nodes + 2 * e, p);
+            p->k = wb_beam_element_curvature(&beam->shape, g, beam->trial.nodes + 2 * e);
+            p->a = p->reference_a + beam->trial.strains[at].eps;
+            p->b = p->reference_b + beam->trial.strains[at].gamma;
+            wb_fibres_respond(beam->fibres, beam->trial.strains[at].eps, p->k - p->reference_k,
                               beam->history + (size_t)at * row,
                               beam->trial_history + (size_t)at * row, &r);
             p->N = r.N;
             p->M = r.M;
-            p->Q = p->G * beam->trial_strain[at].gamma;
+            p->Q = p->G * beam->trial.strains[at].gamma;
             p->D11 = r.D11;
             p->D12 = r.D12;
             p->D22 = r.D22;
@@ -437,12 +428,12 @@ static inline void add_product(double *restrict v, double sign, const double *A,
 static void place_nodes(struct wb_beam *beam, int e)
 {
     const double h = beam->element_length;
-    struct wb_beam_node *node = beam->trial + 2 * e;
+    struct wb_beam_node *node = beam->trial.nodes + 2 * e;
     double x_[POINTS], y_[POINTS];
 
     for (int g = 0; g < POINTS; g++) {
         struct wb_beam_point *const p = &beam->points[e * POINTS + g];
-        const struct strain *const strain = &beam->trial_strain[e * POINTS + g];
+        const struct strain *const strain = &beam->trial.strains[e * POINTS + g];
         wb_beam_element_turn(&beam->shape, g, node, p);
         const double a = p->reference_a + strain->eps, b = p->reference_b + strain->gamma;
         x_[g] = a * p->cosine - b * p->sine;
@@ -457,6 +448,13 @@ static void place_nodes(struct wb_beam *beam, int e)
     node[2].y = node[0].y + h * mean_y;
 }
 
+static void place_all(struct wb_beam *beam)
+{
+    for (int e = 0; e < beam->n_elements; e++)
+        place_nodes(beam, e);
+    beam->has_turns = true;
+}
+
 /* Moves an element whose first node has moved, by `scale` times the increments of its three nodes.
  * The increment changes rotations and strains; positions follow from them. Adding it to positions
  * would stretch a rotating element by half the square of its rotation, far beyond yield, and the
@@ -468,7 +466,7 @@ static void advance_element(struct wb_beam *beam, int e, double scale,
 
     for (int g = 0; g < POINTS; g++) {
         const struct wb_beam_point *p = &beam->points[e * POINTS + g];
-        struct strain *strain = &beam->trial_strain[e * POINTS + g];
+        struct strain *strain = &beam->trial.strains[e * POINTS + g];
         const double *N = beam->shape.N[g], *dN = beam->shape.dN[g];
         const double x_ = dN[0] * (first[0] - middle[0]) + dN[2] * (last[0] - middle[0]);
         const double y_ = dN[0] * (first[1] - middle[1]) + dN[2] * (last[1] - middle[1]);
@@ -476,7 +474,7 @@ static void advance_element(struct wb_beam *beam, int e, double scale,
         strain->eps += scale * (p->cosine * x_ + p->sine * y_ + p->b * t);
         strain->gamma += scale * (p->cosine * y_ - p->sine * x_ - p->a * t);
     }
-    struct wb_beam_node *node = beam->trial + 2 * e;
+    struct wb_beam_node *node = beam->trial.nodes + 2 * e;
     node[1].t += scale * middle[2];
     node[2].t += scale * last[2];
     place_nodes(beam, e);
@@ -518,9 +516,9 @@ double wb_beam_advance_nodes(struct wb_beam *beam, const double (*increment)[3],
         turn = larger(turn, fabs(increment[i][2]));
     const double scale = turn > most_rotation ? most_rotation / turn : 1.0;
 
-    beam->trial[0].x += scale * increment[0][0];
-    beam->trial[0].y += scale * increment[0][1];
-    beam->trial[0].t += scale * increment[0][2];
+    beam->trial.nodes[0].x += scale * increment[0][0];
+    beam->trial.nodes[0].y += scale * increment[0][1];
+    beam->trial.nodes[0].t += scale * increment[0][2];
     for (int e = 0; e < beam->n_elements; e++) {
         const double(*d)[3] = increment + 2 * e;
         advance_element(beam, e, scale, (const double *[]){d[0], d[1], d[2]});
@@ -531,64 +529,56 @@ double wb_beam_advance_nodes(struct wb_beam *beam, const double (*increment)[3],
 
 void wb_beam_revert(struct wb_beam *beam)
 {
-    copy_nodes(beam, beam->trial, beam->committed);
-    copy_strains(beam, beam->trial_strain, beam->committed_strain);
+    copy_state(beam, &beam->trial, &beam->committed);
     beam->has_turns = false;
 }
 
 void wb_beam_extrapolate(struct wb_beam *beam, double ratio)
 {
     for (int i = 0; i < beam->n_elements * POINTS; i++) {
-        const struct strain now = beam->committed_strain[i], was = beam->earlier_strain[i];
-        beam->trial_strain[i].eps = now.eps + ratio * (now.eps - was.eps);
-        beam->trial_strain[i].gamma = now.gamma + ratio * (now.gamma - was.gamma);
+        const struct strain now = beam->committed.strains[i], was = beam->earlier.strains[i];
+        beam->trial.strains[i].eps = now.eps + ratio * (now.eps - was.eps);
+        beam->trial.strains[i].gamma = now.gamma + ratio * (now.gamma - was.gamma);
     }
-    const struct wb_beam_node now = beam->committed[0], was = beam->earlier[0];
-    beam->trial[0].x = now.x + ratio * (now.x - was.x);
-    beam->trial[0].y = now.y + ratio * (now.y - was.y);
+    const struct wb_beam_node now = beam->committed.nodes[0], was = beam->earlier.nodes[0];
+    beam->trial.nodes[0].x = now.x + ratio * (now.x - was.x);
+    beam->trial.nodes[0].y = now.y + ratio * (now.y - was.y);
     for (int i = 0; i < beam->n_nodes; i++)
-        beam->trial[i].t =
-            beam->committed[i].t + ratio * (beam->committed[i].t - beam->earlier[i].t);
-    for (int e = 0; e < beam->n_elements; e++)
-        place_nodes(beam, e);
-    beam->has_turns = true;
+        beam->trial.nodes[i].t = beam->committed.nodes[i].t +
+                                 ratio * (beam->committed.nodes[i].t - beam->earlier.nodes[i].t);
+    place_all(beam);
 }
 
 void wb_beam_follow(struct wb_beam *beam, const struct wb_beam *leader, double ratio)
 {
     for (int i = 0; i < beam->n_elements * POINTS; i++) {
-        const struct strain now = beam->committed_strain[i], was = beam->earlier_strain[i];
-        const struct strain then = leader->committed_strain[i], before = leader->earlier_strain[i];
-        const struct strain there = leader->trial_strain[i];
-        beam->trial_strain[i].eps = now.eps + (there.eps - then.eps) +
-                                    ratio * ((now.eps - was.eps) - (then.eps - before.eps));
-        beam->trial_strain[i].gamma =
+        const struct strain now = beam->committed.strains[i], was = beam->earlier.strains[i];
+        const struct strain then = leader->committed.strains[i],
+                            before = leader->earlier.strains[i];
+        const struct strain there = leader->trial.strains[i];
+        beam->trial.strains[i].eps = now.eps + (there.eps - then.eps) +
+                                     ratio * ((now.eps - was.eps) - (then.eps - before.eps));
+        beam->trial.strains[i].gamma =
             now.gamma + (there.gamma - then.gamma) +
             ratio * ((now.gamma - was.gamma) - (then.gamma - before.gamma));
     }
     for (int i = 0; i < beam->n_nodes; i++) {
-        const double now = beam->committed[i].t, was = beam->earlier[i].t;
-        const double then = leader->committed[i].t, before = leader->earlier[i].t;
-        beam->trial[i].t =
-            now + (leader->trial[i].t - then) + ratio * ((now - was) - (then - before));
+        const double now = beam->committed.nodes[i].t, was = beam->earlier.nodes[i].t;
+        const double then = leader->committed.nodes[i].t, before = leader->earlier.nodes[i].t;
+        beam->trial.nodes[i].t =
+            now + (leader->trial.nodes[i].t - then) + ratio * ((now - was) - (then - before));
     }
-    for (int e = 0; e < beam->n_elements; e++)
-        place_nodes(beam, e);
-    beam->has_turns = true;
+    place_all(beam);
 }
 
 void wb_beam_commit(struct wb_beam *beam)
 {
-    struct wb_beam_node *oldest = beam->earlier;
-    struct strain *oldest_strain = beam->earlier_strain;
+    const struct state oldest = beam->earlier;
     double *old = beam->history;
 
     beam->earlier = beam->committed;
     beam->committed = oldest;
-    copy_nodes(beam, beam->committed, beam->trial);
-    beam->earlier_strain = beam->committed_strain;
-    beam->committed_strain = oldest_strain;
-    copy_strains(beam, beam->committed_strain, beam->trial_strain);
+    copy_state(beam, &beam->committed, &beam->trial);
     beam->history = beam->trial_history;
     beam->trial_history = old;
     for (int i = 0; i < beam->n_elements * POINTS; i++) {
@@ -599,10 +589,8 @@ void wb_beam_commit(struct wb_beam *beam)
 
 void wb_beam_save(struct wb_beam *beam)
 {
-    copy_nodes(beam, beam->saved, beam->committed);
-    copy_nodes(beam, beam->saved_earlier, beam->earlier);
-    copy_strains(beam, beam->saved_strain, beam->committed_strain);
-    copy_strains(beam, beam->saved_earlier_strain, beam->earlier_strain);
+    copy_state(beam, &beam->saved, &beam->committed);
+    copy_state(beam, &beam->saved_earlier, &beam->earlier);
     memcpy(beam->saved_history, beam->history, beam->history_size * sizeof *beam->history);
     memcpy(beam->saved_resultants, beam->committed_resultants,
            (size_t)(beam->n_elements * POINTS) * sizeof *beam->saved_resultants);
@@ -610,10 +598,8 @@ void wb_beam_save(struct wb_beam *beam)
 
 void wb_beam_restore(struct wb_beam *beam)
 {
-    copy_nodes(beam, beam->committed, beam->saved);
-    copy_nodes(beam, beam->earlier, beam->saved_earlier);
-    copy_strains(beam, beam->committed_strain, beam->saved_strain);
-    copy_strains(beam, beam->earlier_strain, beam->saved_earlier_strain);
+    copy_state(beam, &beam->committed, &beam->saved);
+    copy_state(beam, &beam->earlier, &beam->saved_earlier);
     memcpy(beam->history, beam->saved_history, beam->history_size * sizeof *beam->history);
     memcpy(beam->committed_resultants, beam->saved_resultants,
            (size_t)(beam->n_elements * POINTS) * sizeof *beam->saved_resultants);
@@ -639,20 +625,19 @@ const struct wb_beam_point *wb_beam_section(const struct wb_beam *beam, double s
 
 void wb_beam_place(struct wb_beam *beam, const struct wb_beam_node *first)
 {
-    const double turn = first->t - beam->trial[0].t;
+    const double turn = first->t - beam->trial.nodes[0].t;
 
-    beam->trial[0] = *first;
+    beam->trial.nodes[0] = *first;
     for (int i = 1; i < beam->n_nodes; i++)
-        beam->trial[i].t += turn;
-    for (int e = 0; e < beam->n_elements; e++)
-        place_nodes(beam, e);
-    copy_nodes(beam, beam->committed, beam->trial);
-    copy_nodes(beam, beam->earlier, beam->trial);
+        beam->trial.nodes[i].t += turn;
+    place_all(beam);
+    copy_state(beam, &beam->committed, &beam->trial);
+    copy_state(beam, &beam->earlier, &beam->trial);
 }
 
 const struct wb_beam_node *wb_beam_nodes(const struct wb_beam *beam)
 {
-    return beam->trial;
+    return beam->trial.nodes;
 }
 
 const double (*wb_beam_residuals(const struct wb_beam *beam))[3]
@@ -672,7 +657,7 @@ double wb_beam_step_work(const struct wb_beam *beam)
     for (int i = 0; i < beam->n_elements * POINTS; i++) {
         const struct wb_beam_point *p = &beam->points[i];
         const struct resultants *was = &beam->committed_resultants[i];
-        const struct strain *to = &beam->trial_strain[i], *from = &beam->committed_strain[i];
+        const struct strain *to = &beam->trial.strains[i], *from = &beam->committed.strains[i];
         work += 0.5 * beam->shape.weight *
                 ((p->N + was->N) * (to->eps - from->eps) +
                  (p->Q + was->Q) * (to->gamma - from->gamma) + (p->M + was->M) * (p->k - was->k));
@@ -682,7 +667,7 @@ double wb_beam_step_work(const struct wb_beam *beam)
 
 const struct wb_beam_node *wb_beam_tip(const struct wb_beam *beam)
 {
-    return &beam->trial[beam->n_nodes - 1];
+    return &beam->trial.nodes[beam->n_nodes - 1];
 }
 
 const struct wb_beam_node *wb_beam_reference_tip(const struct wb_beam *beam)
@@ -719,7 +704,7 @@ struct wb_beam_node wb_beam_position(const struct wb_beam *beam, double s)
     const int e = (int)fmin(floor(within), beam->n_elements - 1);
     const double z = 2.0 * (within - e) - 1.0;
     const double N[3] = {0.5 * z * (z - 1.0), 1.0 - z * z, 0.5 * z * (z + 1.0)};
-    const struct wb_beam_node *node = beam->committed + 2 * e;
+    const struct wb_beam_node *node = beam->committed.nodes + 2 * e;
     return (struct wb_beam_node){
         N[0] * node[0].x + N[1] * node[1].x + N[2] * node[2].x,
         N[0] * node[0].y + N[1] * node[1].y + N[2] * node[2].y,

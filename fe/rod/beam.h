@@ -9,8 +9,6 @@
 #ifndef WB_FE_ROD_BEAM_H
 #define WB_FE_ROD_BEAM_H
 
-#include <stdbool.h>
-
 #include "base/status.h"
 #include "fe/material/material.h"
 #include "fe/rod/beam_element.h"

@@ -223,14 +223,20 @@ static double size_of(const double *force, double lever)
     return larger(linear, lever * moment);
 }
 
+static void section_strain(const struct wb_rod_strain *at, double *strain)
+{
+    strain[0] = at->stretch[0];
+    memcpy(strain + 1, at->curvature, sizeof at->curvature);
+}
+
 static int evaluate_point(struct wb_rod *rod, int g)
 {
     const struct wb_rod_strain *at = &rod->trial[g];
     struct wb_rod_point *p = &rod->points[g];
-    const double strain[WB_ROD_SECTION_STRAINS] = {at->stretch[0], at->curvature[0],
-                                                   at->curvature[1], at->curvature[2]};
     const size_t row = (size_t)g * rod->row;
+    double strain[WB_ROD_SECTION_STRAINS];
 
+    section_strain(at, strain);
     wb_rod_section_respond(rod->section, strain, rod->history + row, rod->trial_history + row,
                            &p->section);
     wb_rod_element_turn_forces(p, at->stretch + 1);
@@ -383,12 +389,6 @@ void wb_rod_extrapolate(struct wb_rod *rod, double ratio)
         }
     }
     place(rod);
-}
-
-static void section_strain(const struct wb_rod_strain *at, double *strain)
-{
-    strain[0] = at->stretch[0];
-    memcpy(strain + 1, at->curvature, sizeof at->curvature);
 }
 
 static void account(struct wb_rod *rod)

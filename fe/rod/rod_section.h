@@ -14,7 +14,6 @@
 #ifndef WB_FE_ROD_ROD_SECTION_H
 #define WB_FE_ROD_ROD_SECTION_H
 
-#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/status.h"

@@ -12,17 +12,6 @@ struct at {
     double x, y, t, x_, y_, t_;
 };
 
-/* Shape functions at z from -1 to 1 in an element of length h. */
-static void shape_at(double z, double h, double N[NODES], double dN[NODES])
-{
-    N[0] = 0.5 * z * (z - 1.0);
-    N[1] = 1.0 - z * z;
-    N[2] = 0.5 * z * (z + 1.0);
-    dN[0] = (2.0 * z - 1.0) / h;
-    dN[1] = -4.0 * z / h;
-    dN[2] = (2.0 * z + 1.0) / h;
-}
-
 static struct at interpolate(const struct wb_beam_node *node, const double N[NODES],
                              const double dN[NODES])
 {
@@ -73,7 +62,7 @@ bool wb_roller_find(const struct wb_roller *roller, const struct wb_beam *beam, 
     double low = -1.0, high = 1.0, z = fmin(fmax(2.0 * (near / h - e) - 1.0, -1.0), 1.0);
     struct at at;
     for (int i = 0; i < 100; i++) {
-        shape_at(z, h, place->N, place->dN);
+        wb_rod_shape_at(z, h, place->N, place->dN);
         at = interpolate(node, place->N, place->dN);
         const double miss = signed_distance(roller, at.x, at.y, at.t);
         if (miss > 0.0)
