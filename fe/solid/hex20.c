@@ -71,38 +71,33 @@ static void find_shapes(const double x[3], double shape[4][NODES])
     }
 }
 
-/* The cofactors of a 3 x 3 matrix, and its determinant. */
-static double find_cofactors(const double matrix[3][3], double cofactor[3][3])
+/* Shape functions at parent coordinates x, position relative to node 0, so that no digits are lost
+ * far from the origin, and the Jacobian dX_j / dx_i. */
+static void find_place(const double x[3], const double position[NODES][3], double shape[4][NODES],
+                       double place[3], double jacobian[3][3])
 {
-    for (int i = 0; i < 3; i++) {
-        const double *u = matrix[(i + 1) % 3], *v = matrix[(i + 2) % 3];
+    find_shapes(x, shape);
+    memset(place, 0, 3 * sizeof *place);
+    memset(jacobian, 0, 3 * sizeof *jacobian);
+    for (int a = 1; a < NODES; a++) {
         for (int j = 0; j < 3; j++) {
-            const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-            cofactor[i][j] = u[j1] * v[j2] - u[j2] * v[j1];
+            const double away = position[a][j] - position[0][j];
+            place[j] += shape[3][a] * away;
+            for (int i = 0; i < 3; i++)
+                jacobian[i][j] += shape[i][a] * away;
         }
     }
-    return matrix[0][0] * cofactor[0][0] + matrix[0][1] * cofactor[0][1] +
-           matrix[0][2] * cofactor[0][2];
 }
 
 /* The Jacobian's determinant at x; `gradient` (3 x 20, 1/m) may be NULL. */
 static double find_gradient(const double x[3], const double position[NODES][3],
                             double shape[4][NODES], double gradient[3][NODES])
 {
-    double jacobian[3][3] = {{0.0}}, cofactor[3][3]; /* dX_j / dx_i */
+    double place[3], jacobian[3][3], cofactor[3][3];
 
-    find_shapes(x, shape);
-    for (int a = 1; a < NODES; a++) {
-        for (int i = 0; i < 3; i++) {
-            /* Positions relative to node 0, so that no digits are lost far from the origin. */
-            for (int j = 0; j < 3; j++)
-                jacobian[i][j] += shape[i][a] * (position[a][j] - position[0][j]);
-        }
-    }
-    const double determinant = find_cofactors((const double(*)[3])jacobian, cofactor);
-    if (!gradient)
-        return determinant;
-    for (int j = 0; j < 3; j++) {
+    find_place(x, position, shape, place, jacobian);
+    const double determinant = wb_solid_point_cofactors((const double(*)[3])jacobian, cofactor);
+    for (int j = 0; gradient && j < 3; j++) {
         for (int a = 0; a < NODES; a++) {
             gradient[j][a] = (cofactor[0][j] * shape[0][a] + cofactor[1][j] * shape[1][a] +
                               cofactor[2][j] * shape[2][a]) /
@@ -132,25 +127,6 @@ static bool fill_points(const struct rule *rule, const double position[NODES][3]
         }
     }
     return true;
-}
-
-/* Position relative to node 0 at parent coordinates x, and the Jacobian dX_j / dx_i. */
-static void find_place(const double x[3], const double position[NODES][3], double place[3],
-                       double jacobian[3][3])
-{
-    double shape[4][NODES];
-
-    find_shapes(x, shape);
-    memset(place, 0, 3 * sizeof *place);
-    memset(jacobian, 0, 3 * sizeof *jacobian);
-    for (int a = 1; a < NODES; a++) {
-        for (int j = 0; j < 3; j++) {
-            const double away = position[a][j] - position[0][j];
-            place[j] += shape[3][a] * away;
-            for (int i = 0; i < 3; i++)
-                jacobian[i][j] += shape[i][a] * away;
-        }
-    }
 }
 
 /* The eight functions 1, x, y, z, xy, yz, zx, xyz. */
@@ -202,17 +178,17 @@ static bool solve_corners(double A[CORNERS][CORNERS], double b[CORNERS][NODES])
  * the element is so distorted that the weights exceed large_share. */
 static bool find_affine_shares(const double position[NODES][3], double share[NODES][CORNERS])
 {
-    double centre[3], at[3], jacobian[3][3], unused[3][3], cofactor[3][3];
+    double shape[4][NODES], centre[3], at[3], jacobian[3][3], unused[3][3], cofactor[3][3];
     double A[CORNERS][CORNERS], b[CORNERS][NODES]; /* function x point, function x node */
 
-    find_place((const double[3]){0.0}, position, centre, jacobian);
-    const double determinant = find_cofactors((const double(*)[3])jacobian, cofactor);
+    find_place((const double[3]){0.0}, position, shape, centre, jacobian);
+    const double determinant = wb_solid_point_cofactors((const double(*)[3])jacobian, cofactor);
     for (int k = 0; k < CORNERS + NODES; k++) {
         const int a = k - CORNERS;
         double x[3], affine[3] = {0.0}, value[CORNERS];
         for (int i = 0; i < 3; i++)
             x[i] = k < CORNERS ? two.place[k >> i & 1] : node_place[a][i];
-        find_place(x, position, at, unused);
+        find_place(x, position, shape, at, unused);
         for (int i = 0; i < 3; i++) {
             for (int j = 0; j < 3; j++)
                 affine[i] += (at[j] - centre[j]) * cofactor[i][j] / determinant;

@@ -8,8 +8,6 @@
 #ifndef WB_FE_SOLID_HEX20_KERNEL_H
 #define WB_FE_SOLID_HEX20_KERNEL_H
 
-#include <stdbool.h>
-
 #include "fe/solid/hex20_points.h"
 #include "fe/solid/solid_point.h"
 

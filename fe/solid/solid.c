@@ -169,6 +169,11 @@ void wb_solid_destroy(struct wb_solid *solid)
     free(solid);
 }
 
+static size_t vector_bytes(const struct wb_solid *solid)
+{
+    return 3 * (size_t)solid->body.mesh->n_nodes * sizeof(double);
+}
+
 /* --- one equilibrium, by Newton's method --- */
 
 /* The last factorisation is reused below this relative residual, as long as the residual decreases
@@ -193,43 +198,37 @@ struct step {
     double tension, share;
 };
 
+/* All loads as one vector. */
+enum {
+    LOADS = sizeof(struct wb_solid_loads) / sizeof(double)
+};
+
+union loads {
+    struct wb_solid_loads all;
+    double value[LOADS];
+};
+
 /* Loads at a share of a move; `tension` is used where the tension is an unknown. */
 static struct wb_solid_loads loads_at(const struct increment *increment, double share,
                                       double tension)
 {
-    const struct wb_solid_loads *a = &increment->start, *b = &increment->move->target;
-    struct wb_solid_loads at = {
-        .weight = a->weight + share * (b->weight - a->weight),
-        .supports = a->supports + share * (b->supports - a->supports),
-        .nodal = a->nodal + share * (b->nodal - a->nodal),
-        .tension = a->tension + share * (b->tension - a->tension),
-    };
-    for (int i = 0; i < 3; i++) {
-        at.tip.force[i] = a->tip.force[i] + share * (b->tip.force[i] - a->tip.force[i]);
-        at.tip.moment[i] = a->tip.moment[i] + share * (b->tip.moment[i] - a->tip.moment[i]);
-        at.tip.follower[i] = a->tip.follower[i] + share * (b->tip.follower[i] - a->tip.follower[i]);
-    }
+    const union loads a = {increment->start}, b = {increment->move->target};
+    union loads at;
+    for (int i = 0; i < LOADS; i++)
+        at.value[i] = a.value[i] + share * (b.value[i] - a.value[i]);
     if (increment->move->control == WB_SOLID_DEFLECTION)
-        at.tension = tension;
-    return at;
+        at.all.tension = tension;
+    return at.all;
 }
 
 /* Derivative of the loads with respect to the share. */
 static struct wb_solid_loads rate_of_loads(const struct increment *increment)
 {
-    const struct wb_solid_loads a = loads_at(increment, 0.0, 0.0);
-    struct wb_solid_loads rate = loads_at(increment, 1.0, 0.0);
-
-    rate.weight -= a.weight;
-    rate.supports -= a.supports;
-    rate.nodal -= a.nodal;
-    rate.tension -= a.tension;
-    for (int i = 0; i < 3; i++) {
-        rate.tip.force[i] -= a.tip.force[i];
-        rate.tip.moment[i] -= a.tip.moment[i];
-        rate.tip.follower[i] -= a.tip.follower[i];
-    }
-    return rate;
+    const union loads a = {loads_at(increment, 0.0, 0.0)};
+    union loads rate = {loads_at(increment, 1.0, 0.0)};
+    for (int i = 0; i < LOADS; i++)
+        rate.value[i] -= a.value[i];
+    return rate.all;
 }
 
 static double *column(const struct wb_solid *solid, int c)
@@ -312,12 +311,10 @@ static bool evaluate(struct wb_solid *solid, const struct increment *increment, 
 {
     struct wb_solid_body *body = &solid->body;
 
-    if (change_supports) {
-        memset(solid->held_force, 0, 3 * (size_t)body->mesh->n_nodes * sizeof *solid->held_force);
-        wb_solid_body_evaluate_held(body, solid->u, solid->held, solid->held_force, &solid->found);
-    } else {
-        wb_solid_body_evaluate(body, solid->u, stiffness, &solid->found);
-    }
+    if (change_supports)
+        memset(solid->held_force, 0, vector_bytes(solid));
+    wb_solid_body_evaluate(body, solid->u, stiffness, change_supports ? solid->held : NULL,
+                           solid->held_force, &solid->found);
     if (!solid->found.possible)
         return false;
     compute_residual(solid);
@@ -485,7 +482,7 @@ static bool solve_step(struct wb_solid *solid, const struct increment *increment
         }
     }
 
-    memset(solid->step, 0, 3 * (size_t)body->mesh->n_nodes * sizeof *solid->step);
+    memset(solid->step, 0, vector_bytes(solid));
     for (int c = 0; c < COLUMNS; c++) {
         const double *part = column(solid, c);
         for (int i = 0; coefficient[c] != 0.0 && i < 3 * body->mesh->n_nodes; i++)
@@ -507,9 +504,7 @@ static void set_supports(struct wb_solid *solid)
 static void take_step(struct wb_solid *solid, struct increment *increment, const struct step *step,
                       const struct wb_solid_loads *loads, double share, double scale)
 {
-    const size_t bytes = 3 * (size_t)solid->body.mesh->n_nodes * sizeof *solid->u;
-
-    memcpy(solid->u, solid->base, bytes);
+    memcpy(solid->u, solid->base, vector_bytes(solid));
     wb_solid_update_advance(&solid->update, solid->u, solid->step, scale);
     if (increment->move->control == WB_SOLID_ARC)
         increment->share = share + scale * step->share;
@@ -567,7 +562,7 @@ static bool take_damped_step(struct wb_solid *solid, struct increment *increment
     const double share = increment->share, before = solid->residual;
     double scale = first_scale(step);
 
-    memcpy(solid->base, solid->u, 3 * (size_t)solid->body.mesh->n_nodes * sizeof *solid->u);
+    memcpy(solid->base, solid->u, vector_bytes(solid));
     for (int attempt = 0; attempt < 5; attempt++, scale *= 0.5) {
         take_step(solid, increment, step, &loads, share, scale);
         if (!evaluate(solid, increment, stiffness, false))
@@ -579,8 +574,8 @@ static bool take_damped_step(struct wb_solid *solid, struct increment *increment
     return false;
 }
 
-/* Writes the reason and the place of the largest residual to solid->problem. */
-static void describe_problem(struct wb_solid *solid, const char *reason)
+/* Writes the reason and the place of the largest residual to solid->problem; returns false. */
+static bool fail(struct wb_solid *solid, const char *reason)
 {
     const double *X = solid->body.mesh->node[solid->worst_node];
 
@@ -590,12 +585,13 @@ static void describe_problem(struct wb_solid *solid, const char *reason)
                  "element %d at %.4g mm along the wire is inverted (after %d iterations)",
                  solid->found.worst_element, solid->body.mesh->node[node][0] / WB_MM,
                  solid->iterations);
-        return;
+        return false;
     }
     snprintf(solid->problem, sizeof solid->problem,
              "%s: after %d iterations the relative residual is %.2g, largest at (%.4g, %.4g, %.4g) "
              "mm",
              reason, solid->iterations, solid->residual, X[0] / WB_MM, X[1] / WB_MM, X[2] / WB_MM);
+    return false;
 }
 
 static bool has_converged(const struct wb_solid *solid, const struct increment *increment)
@@ -618,7 +614,7 @@ static bool supports_change(struct wb_solid *solid)
 {
     bool any = false;
 
-    memset(solid->held, 0, 3 * (size_t)solid->body.mesh->n_nodes * sizeof *solid->held);
+    memset(solid->held, 0, vector_bytes(solid));
     for (int i = 0; i < solid->n_supports; i++) {
         const struct wb_solid_support *s = &solid->supports[i];
         const int at = 3 * s->node + s->axis;
@@ -640,10 +636,8 @@ static bool find_equilibrium(struct wb_solid *solid, struct increment *increment
     solid->iterations = 0;
     memset(increment->change, 0, sizeof increment->change);
     const bool move_supports = !predicted && supports_change(solid);
-    if (!evaluate(solid, increment, true, move_supports)) {
-        describe_problem(solid, "the tangent stiffness is singular");
-        return false;
-    }
+    if (!evaluate(solid, increment, true, move_supports))
+        return fail(solid, "the tangent stiffness is singular");
     /* Many small residuals of one sign are a load: accept the initial state only if its residual is
      * far below the tolerance; an iteration is cheap there. */
     const bool at_once = !arc && !move_supports &&
@@ -651,32 +645,24 @@ static bool find_equilibrium(struct wb_solid *solid, struct increment *increment
     while (!has_converged(solid, increment) || (solid->iterations == 0 && !at_once)) {
         struct step step;
         const double before = solid->residual;
-        if (solid->iterations++ == solid->settings.max_iterations) {
-            describe_problem(solid, "no convergence");
-            return false;
-        }
+        if (solid->iterations++ == solid->settings.max_iterations)
+            return fail(solid, "no convergence");
         const bool first = solid->iterations == 1;
-        if (!solve_step(solid, increment, first, &step)) {
-            describe_problem(solid, "the tip's equations are singular");
-            return false;
-        }
+        if (!solve_step(solid, increment, first, &step))
+            return fail(solid, "the tip's equations are singular");
         if (first && move_supports)
             for (int i = 0; i < 3 * solid->body.mesh->n_nodes; i++)
                 solid->step[i] += solid->held[i];
 
         /* Near convergence evaluate only the forces and reuse the tangent. */
         const bool near = before < reuse_below && !first;
-        if (!take_damped_step(solid, increment, &step, !near, !first)) {
-            describe_problem(solid, "no convergence");
-            return false;
-        }
+        if (!take_damped_step(solid, increment, &step, !near, !first))
+            return fail(solid, "no convergence");
         if (has_converged(solid, increment))
             break;
         if (near && (!fresh || solid->residual > good_reduction * before)) {
-            if (!evaluate(solid, increment, true, false)) {
-                describe_problem(solid, "the tangent stiffness is singular");
-                return false;
-            }
+            if (!evaluate(solid, increment, true, false))
+                return fail(solid, "the tangent stiffness is singular");
             fresh = true;
         } else {
             fresh = !near;
@@ -702,11 +688,6 @@ static const double max_overshoot = 1e-3;
 
 /* Default number of arc increments in a move. */
 static const int default_arc_increments = 1;
-
-static size_t vector_bytes(const struct wb_solid *solid)
-{
-    return 3 * (size_t)solid->body.mesh->n_nodes * sizeof(double);
-}
 
 static double deflection_of(const struct wb_solid *solid, const double *u)
 {
@@ -887,10 +868,36 @@ static double increment_to_slack(const struct wb_solid *solid, const struct incr
     return (increment->share - increment->from) * from / (from - to);
 }
 
+/* Whether the increment ends in an equilibrium that can be accepted; otherwise the end of the move
+ * if no shorter increment can, and the pace of the next attempt. */
+static enum wb_solid_end judge(struct wb_solid *solid, const struct increment *increment,
+                               bool converged, double *pace)
+{
+    const double tried = increment->share - increment->from;
+    const double rotation = tip_rotation(increment);
+
+    if (!converged || passes_critical_point(solid, increment)) {
+        *pace = 0.5 * tried;
+        return WB_SOLID_NOT_CONVERGED;
+    }
+    if (rotation > 2.0 * solid->settings.most_rotation) {
+        /* Rotation too large for path-dependent plasticity. */
+        *pace = tried * solid->settings.most_rotation / rotation;
+        snprintf(solid->problem, sizeof solid->problem,
+                 "the tip rotates by %.2g rad between %.6g and %.6g of the move: no equilibrium "
+                 "nearby",
+                 rotation, increment->from, increment->share);
+        return WB_SOLID_NOT_CONVERGED;
+    }
+    if (!pushes(solid, increment))
+        return WB_SOLID_CONVERGED;
+    *pace = increment_to_slack(solid, increment);
+    return WB_SOLID_SLACK;
+}
+
 static void move_by_shares(struct wb_solid *solid, struct increment *increment,
                            struct wb_solid_point *point)
 {
-    const double smallest = solid->settings.smallest_increment;
     double pace = fmin(1.0, solid->pace);
 
     while (point->fraction < 1.0) {
@@ -908,38 +915,12 @@ static void move_by_shares(struct wb_solid *solid, struct increment *increment,
             converged = find_equilibrium(solid, increment, false);
             point->iterations += solid->iterations;
         }
-        if (!converged || passes_critical_point(solid, increment)) {
+        const enum wb_solid_end end = judge(solid, increment, converged, &pace);
+        if (end != WB_SOLID_CONVERGED) {
             revert(solid);
-            point->cutbacks++;
-            pace = 0.5 * (increment->share - increment->from);
-            if (pace < smallest) {
-                finish(solid, point, WB_SOLID_NOT_CONVERGED);
-                return;
-            }
-            continue;
-        }
-        if (tip_rotation(increment) > 2.0 * solid->settings.most_rotation) {
-            /* Rotation too large for path-dependent plasticity. */
-            pace = (increment->share - increment->from) * solid->settings.most_rotation /
-                   tip_rotation(increment);
-            snprintf(
-                solid->problem, sizeof solid->problem,
-                "the tip rotates by %.2g rad between %.6g and %.6g of the move: no equilibrium "
-                "nearby",
-                tip_rotation(increment), increment->from, increment->share);
-            revert(solid);
-            point->cutbacks++;
-            if (pace < smallest) {
-                finish(solid, point, WB_SOLID_NOT_CONVERGED);
-                return;
-            }
-            continue;
-        }
-        if (pushes(solid, increment)) {
-            pace = increment_to_slack(solid, increment);
-            revert(solid);
-            if (pace < smallest) {
-                finish(solid, point, WB_SOLID_SLACK);
+            point->cutbacks += end == WB_SOLID_NOT_CONVERGED;
+            if (pace < solid->settings.smallest_increment) {
+                finish(solid, point, end);
                 return;
             }
             continue;
@@ -1016,10 +997,10 @@ static void move_by_arc(struct wb_solid *solid, struct increment *increment,
 
 static bool is_finite(const struct wb_solid_move *move)
 {
-    const struct wb_solid_loads *t = &move->target;
-    double sum = t->weight + t->supports + t->nodal + t->tension + move->deflection;
-    for (int i = 0; i < 3; i++)
-        sum += t->tip.force[i] + t->tip.moment[i] + t->tip.follower[i];
+    const union loads target = {move->target};
+    double sum = move->deflection;
+    for (int i = 0; i < LOADS; i++)
+        sum += target.value[i];
     return isfinite(sum);
 }
 

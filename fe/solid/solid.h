@@ -14,7 +14,6 @@
 #define WB_FE_SOLID_SOLID_H
 
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "base/status.h"
 #include "fe/solid/jacket_contact.h"

@@ -183,7 +183,7 @@ struct assembly {
     struct wb_solid_body *body;
     const double *u;
     bool stiffness;
-    const double *held_change;
+    const double *held_change; /* NULL: none */
     double *held_force;
     struct wb_solid_body_result *result;
 };
@@ -310,22 +310,10 @@ static void assemble(const struct assembly *a)
 }
 
 void wb_solid_body_evaluate(struct wb_solid_body *body, const double *u, bool stiffness,
+                            const double *held_change, double *held_force,
                             struct wb_solid_body_result *result)
 {
-    const struct assembly a = {.body = body, .u = u, .stiffness = stiffness, .result = result};
-    assemble(&a);
-}
-
-void wb_solid_body_evaluate_held(struct wb_solid_body *body, const double *u,
-                                 const double *held_change, double *held_force,
-                                 struct wb_solid_body_result *result)
-{
-    const struct assembly a = {.body = body,
-                               .u = u,
-                               .stiffness = true,
-                               .held_change = held_change,
-                               .held_force = held_force,
-                               .result = result};
+    const struct assembly a = {body, u, stiffness, held_change, held_force, result};
     assemble(&a);
 }
 

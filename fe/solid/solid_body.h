@@ -48,13 +48,11 @@ WB_MUST_CHECK enum wb_status wb_solid_body_init(struct wb_solid_body *body,
 void wb_solid_body_release(struct wb_solid_body *body); /* accepts a zeroed one */
 
 /* Computes internal forces for displacements u, from the committed histories to the trial ones;
- * with `stiffness` also the tangent. wb_solid_body_evaluate_held() also adds the tangent times
- * `held_change`, a change of prescribed displacements, to `held_force` (3 n_nodes). */
+ * with `stiffness` also the tangent, and the tangent times `held_change` (3 n_nodes; NULL: none), a
+ * change of prescribed displacements, which is added to `held_force` (3 n_nodes). */
 void wb_solid_body_evaluate(struct wb_solid_body *body, const double *u, bool stiffness,
+                            const double *held_change, double *held_force,
                             struct wb_solid_body_result *result);
-void wb_solid_body_evaluate_held(struct wb_solid_body *body, const double *u,
-                                 const double *held_change, double *held_force,
-                                 struct wb_solid_body_result *result);
 
 /* Commits the trial histories. */
 void wb_solid_body_commit(struct wb_solid_body *body);

@@ -23,6 +23,19 @@ struct flow {
     double dissipated; /* J/m3 */
 };
 
+double wb_solid_point_cofactors(const double matrix[3][3], double cofactor[3][3])
+{
+    for (int i = 0; i < 3; i++) {
+        const double *u = matrix[(i + 1) % 3], *v = matrix[(i + 2) % 3];
+        for (int j = 0; j < 3; j++) {
+            const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+            cofactor[i][j] = u[j1] * v[j2] - u[j2] * v[j1];
+        }
+    }
+    return matrix[0][0] * cofactor[0][0] + matrix[0][1] * cofactor[0][1] +
+           matrix[0][2] * cofactor[0][2];
+}
+
 void wb_solid_point_law_init(struct wb_solid_point_law *law, const struct wb_material *material)
 {
     const double E = material->youngs_modulus, nu = material->poissons_ratio;
@@ -44,13 +57,7 @@ bool wb_solid_point_motion_init(struct wb_solid_point_motion *motion, const doub
             f[i][j] = h[i][j] + (i == j);
         }
     }
-    for (int i = 0; i < 3; i++) {
-        const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-        for (int j = 0; j < 3; j++) {
-            const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-            cofactor[i][j] = f[i1][j1] * f[i2][j2] - f[i1][j2] * f[i2][j1];
-        }
-    }
+    wb_solid_point_cofactors((const double(*)[3])f, cofactor);
 
     /* J - 1 from the invariants of H, which keeps the digits of small strains. */
     const double first = h[0][0] + h[1][1] + h[2][2];

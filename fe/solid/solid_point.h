@@ -63,6 +63,9 @@ struct wb_solid_point_response {
     bool yields;
 };
 
+/* The cofactors of a 3 x 3 matrix; returns its determinant. */
+double wb_solid_point_cofactors(const double matrix[3][3], double cofactor[3][3]);
+
 void wb_solid_point_law_init(struct wb_solid_point_law *law, const struct wb_material *material);
 
 /* Computes the motion, except for the spectrum, from the displacement gradient (row by row). False

@@ -3,6 +3,7 @@
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "base/vec3.h"
@@ -47,8 +48,7 @@ static void add_faces(struct wb_solid_tip_section *tip, const struct wb_solid_me
         double position[WB_SOLID_MESH_FACE][3];
 
         for (int k = 0; k < WB_SOLID_MESH_FACE; k++)
-            for (int i = 0; i < 3; i++)
-                position[k][i] = mesh->node[face->node[k]][i];
+            memcpy(position[k], mesh->node[face->node[k]], sizeof position[k]);
         wb_hex20_face_integrals((const double(*)[3])position, &integrals);
         for (int k = 0; k < WB_SOLID_MESH_FACE; k++) {
             double *pattern = tip->pattern[place[face->node[k]]];
@@ -105,20 +105,16 @@ void wb_solid_tip_motion(const struct wb_solid_tip_section *tip, const struct wb
 
 void wb_solid_tip_frame(const double z[WB_SOLID_TIP_UNKNOWNS], double frame[3][3])
 {
-    const double *y = z + 3, *w = z + 6;
-    const double normal[3] = {y[1] * w[2] - y[2] * w[1], y[2] * w[0] - y[0] * w[2],
-                              y[0] * w[1] - y[1] * w[0]};
-    const double size = wb_vec3_length(normal);
-    const double length = wb_vec3_length(y);
+    const double *y = z + 3;
+    double normal[3];
 
+    wb_vec3_cross(y, z + 6, normal);
+    const double size = wb_vec3_length(normal), length = wb_vec3_length(y);
     for (int i = 0; i < 3; i++) {
         frame[0][i] = normal[i] / size;
         frame[1][i] = y[i] / length;
     }
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        frame[2][i] = frame[0][j] * frame[1][k] - frame[0][k] * frame[1][j];
-    }
+    wb_vec3_cross(frame[0], frame[1], frame[2]);
 }
 
 /* Complex numbers for complex-step differentiation: an imaginary step in z gives the derivative

@@ -8,15 +8,10 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 
-static double inner(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Change of v when rotated by the rotation vector w (Rodrigues); `change` may be v. */
 static void find_turn(const double w[3], const double v[3], double change[3])
 {
-    const double angle2 = inner(w, w), angle = sqrt(angle2);
+    const double angle2 = wb_vec3_dot(w, w), angle = sqrt(angle2);
     /* sin a / a and (1 - cos a) / a^2 */
     const double s = angle < 1e-4 ? 1.0 - angle2 / 6.0 : sin(angle) / angle;
     const double half = angle < 1e-4 ? 1.0 : sin(0.5 * angle) / (0.5 * angle);
@@ -106,10 +101,10 @@ static void solve_rotation(const double J[6], const double moment[3], double w[3
     double minor[3];
 
     wb_vec3_cross(A[1], A[2], minor);
-    const double determinant = inner(A[0], minor);
+    const double determinant = wb_vec3_dot(A[0], minor);
     for (int k = 0; k < 3; k++) {
         wb_vec3_cross(A[(k + 1) % 3], A[(k + 2) % 3], minor);
-        w[k] = inner(moment, minor) / determinant;
+        w[k] = wb_vec3_dot(moment, minor) / determinant;
     }
 }
 
