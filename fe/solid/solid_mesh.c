@@ -166,11 +166,6 @@ static int *lattice_at(const struct lattice *lattice, int i, int j)
     return &lattice->id[i * lattice->nj + j % lattice->nj];
 }
 
-static void section_release(struct section *s)
-{
-    wb_memory_release(&s->memory);
-}
-
 static void section_init(struct section *s, int most_nodes, int most_quads, int most_edges)
 {
     *s = (struct section){0};
@@ -347,20 +342,6 @@ static void wire_section(struct section *s, const struct wb_solid_mesh_wire *wir
         free(ring[p].id);
 }
 
-static void block_section(struct section *s, int ny, int nz)
-{
-    struct lattice lattice;
-    section_init(s, (2 * ny + 1) * (2 * nz + 1), ny * nz, 0);
-    lattice_init(&lattice, 2 * ny + 1, 2 * nz + 1);
-    for (int i = 0; i <= 2 * ny; i++) {
-        for (int j = 0; j <= 2 * nz; j++)
-            *lattice_at(&lattice, i, j) =
-                add_node(s, i, j, (double)i / (2 * ny), (double)j / (2 * nz));
-    }
-    add_quads(s, &lattice, ny, nz, 0);
-    free(lattice.id);
-}
-
 /* Node numbers in the sweep: node i of section l, and halfway between sections l - 1 and l. */
 static int section_node(const struct section *s, int l, int i)
 {
@@ -403,35 +384,25 @@ static void side_face(int face[WB_SOLID_MESH_FACE], const struct section *s, int
     face[7] = halfway_node(s, l + 1, edge[0]);
 }
 
-/* Maps a point of the unit length times the section into space. */
-struct placement {
-    void (*place)(void *context, const double unit[3], double position[3]);
-    void *context;
-};
-
-static bool fill_nodes(struct wb_solid_mesh *mesh, const struct section *s, int slices,
-                       const struct placement *to)
+static void fill_nodes(struct wb_solid_mesh *mesh, const struct section *s, int slices,
+                       double length)
 {
-    bool finite = true;
     for (int l = 0; l <= slices; l++) {
         for (int i = 0; i < s->n; i++) {
             double *node = mesh->node[section_node(s, l, i)];
-            const double here[3] = {(double)l / slices, s->at[i][0], s->at[i][1]};
-            to->place(to->context, here, node);
-            finite = finite && isfinite(node[0] + node[1] + node[2]);
+            node[0] = (double)l / slices * length;
+            memcpy(node + 1, s->at[i], sizeof s->at[i]);
             if (l == 0 || s->halfway[i] < 0)
                 continue;
             node = mesh->node[halfway_node(s, l, i)];
-            const double before[3] = {(2 * l - 1) / (2.0 * slices), here[1], here[2]};
-            to->place(to->context, before, node);
-            finite = finite && isfinite(node[0] + node[1] + node[2]);
+            node[0] = (2 * l - 1) / (2.0 * slices) * length;
+            memcpy(node + 1, s->at[i], sizeof s->at[i]);
         }
     }
-    return finite;
 }
 
 static enum wb_status sweep(struct wb_solid_mesh *mesh, const struct section *s, int slices,
-                            const struct placement *to)
+                            double length)
 {
     const long long nodes = s->n + (long long)slices * (s->n + s->n_corners);
     const long long elements = (long long)slices * s->n_quads;
@@ -460,10 +431,7 @@ static enum wb_status sweep(struct wb_solid_mesh *mesh, const struct section *s,
         side_face(made.pair[i].inner, s, l, s->edge[k][0]);
         side_face(made.pair[i].outer, s, l, s->edge[k][1]);
     }
-    if (!fill_nodes(&made, s, slices, to)) {
-        wb_solid_mesh_release(&made);
-        return wb_fail(WB_ERR_ARGUMENT, "a mesh has nodes at positions that are not finite");
-    }
+    fill_nodes(&made, s, slices, length);
     *mesh = made;
     return WB_OK;
 }
@@ -490,14 +458,6 @@ static void mark_wire(struct wb_solid_mesh *mesh, const struct section *s, int s
         if (l > 0)
             mesh->axis[2 * l - 1] = halfway_node(s, l, centre);
     }
-}
-
-static void place_along(void *context, const double unit[3], double position[3])
-{
-    const double *length = context;
-    position[0] = unit[0] * *length;
-    position[1] = unit[1];
-    position[2] = unit[2];
 }
 
 static enum wb_status check_wire(const struct wb_solid_mesh_wire *wire)
@@ -529,12 +489,10 @@ enum wb_status wb_solid_mesh_sweep(struct wb_solid_mesh *mesh,
 {
     struct section section;
     struct wb_solid_mesh made;
-    double length = wire->length;
     WB_TRY(check_wire(wire));
     wire_section(&section, wire);
 
-    const struct placement along = {place_along, &length};
-    const enum wb_status status = sweep(&made, &section, wire->elements_along, &along);
+    const enum wb_status status = sweep(&made, &section, wire->elements_along, wire->length);
     if (status == WB_OK) {
         made.n_parts = wire->n_parts;
         int centre = 0;
@@ -543,31 +501,6 @@ enum wb_status wb_solid_mesh_sweep(struct wb_solid_mesh *mesh,
         mark_wire(&made, &section, wire->elements_along, centre);
         *mesh = made;
     }
-    section_release(&section);
-    return status;
-}
-
-static void place_unit(void *context, const double unit[3], double position[3])
-{
-    (void)context;
-    for (int k = 0; k < 3; k++)
-        position[k] = unit[k];
-}
-
-enum wb_status wb_solid_mesh_block(struct wb_solid_mesh *mesh, int nx, int ny, int nz,
-                                   void (*map)(void *context, const double unit[3],
-                                               double position[3]),
-                                   void *context)
-{
-    const int most = 1000;
-    struct section section;
-    if (nx < 1 || ny < 1 || nz < 1 || nx > MAX_ALONG || ny > most || nz > most)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "the block has %d x %d x %d elements: expected 1 to %d, 1 to %d and 1 to %d",
-                       nx, ny, nz, MAX_ALONG, most, most);
-    block_section(&section, ny, nz);
-    const struct placement to = {map ? map : place_unit, context};
-    const enum wb_status status = sweep(mesh, &section, nx, &to);
-    section_release(&section);
+    wb_memory_release(&section.memory);
     return status;
 }

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 #include "fe/solid/solid.h"
-#include "fe/solid/solid_mesh_private.h"
 #include "tests/check.h"
+#include "tests/fe/solid/block_mesh.h"
 
 static const enum wb_integration test_solid_rules[2] = {WB_INTEGRATION_SELECTIVE,
                                                         WB_INTEGRATION_REDUCED};
@@ -46,7 +46,7 @@ static inline void test_solid_init(struct test_solid *t, const struct wb_materia
 static inline void test_solid_block(struct test_solid *t, const int n[3],
                                     void (*map)(void *, const double *, double *), void *context)
 {
-    assert_int_equal(wb_solid_mesh_block(&t->mesh, n[0], n[1], n[2], map, context), WB_OK);
+    test_block_mesh(&t->mesh, n[0], n[1], n[2], map, context);
 }
 
 static inline void test_solid_release(struct test_solid *t)

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 
 #include "fe/solid/solid_mesh.h"
-#include "fe/solid/solid_mesh_private.h"
 #include "tests/check.h"
+#include "tests/fe/solid/block_mesh.h"
 #include "tests/fe/solid/hex20_cases.h"
 #include "tests/fe/solid/hex20_twin.h"
 
@@ -419,7 +419,7 @@ static double bending_compliance(double nu, bool full)
 {
     const struct wb_material m = {WB_HARDENING_NONE_ELASTIC, 1.0, nu, 0.0, 0.0, 0.0};
     struct wb_solid_mesh mesh = {0};
-    assert_int_equal(wb_solid_mesh_block(&mesh, 2, 1, 1, skew, NULL), WB_OK);
+    test_block_mesh(&mesh, 2, 1, 1, skew, NULL);
     const int n = 3 * mesh.n_nodes;
     double *A = calloc((size_t)(n * n), sizeof *A), *b = calloc((size_t)n, sizeof *b);
     double *load = calloc((size_t)n, sizeof *load);

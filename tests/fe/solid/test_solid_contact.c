@@ -1,11 +1,11 @@
 /* Contact with friction in bodies: blocks pressed together and sheared, compared with Coulomb's
  * law; wires of a core and a jacket, compared with bonded ones and beam theory. */
 #include "tests/check.h"
+#include "tests/fe/solid/block_mesh.h"
 
 #include <stdlib.h>
 
 #include "fe/solid/solid.h"
-#include "fe/solid/solid_mesh_private.h"
 #include "fe/solid/solid_private.h"
 #include "fe/trial/wire3d.h"
 
@@ -40,7 +40,7 @@ static const double area = 1e-6; /* m2, of the interface */
 static void add_block(struct stack *s, bool upper)
 {
     struct wb_solid_mesh block = {0};
-    assert_int_equal(wb_solid_mesh_block(&block, 1, SIDE, SIDE, NULL, NULL), WB_OK);
+    test_block_mesh(&block, 1, SIDE, SIDE, NULL, NULL);
     if (!upper) {
         assert_int_equal(wb_solid_mesh_init(&s->mesh, 2 * block.n_nodes, 2 * block.n_elements),
                          WB_OK);

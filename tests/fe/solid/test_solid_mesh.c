@@ -3,8 +3,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "fe/solid/solid_mesh_private.h"
 #include "tests/check.h"
+#include "tests/fe/solid/block_mesh.h"
 
 static const struct wb_solid_mesh_wire cylinder = {
     .length = 10.0,
@@ -409,7 +409,7 @@ static void every_side_of_an_element_can_lie_in_the_longitudinal_section(void **
         struct wb_solid_face *faces;
         double normal[3];
         int n;
-        assert_int_equal(wb_solid_mesh_block(&mesh, 1, 1, 1, turned_cube, &k), WB_OK);
+        test_block_mesh(&mesh, 1, 1, 1, turned_cube, &k);
         assert_close(volume(&mesh, 0, NULL), 1.0, 1e-8);
         assert_int_equal(wb_solid_mesh_longitudinal(&mesh, &faces, &n), WB_OK);
         assert_int_equal(n, 1);
@@ -465,7 +465,7 @@ static void block_is_mapped_with_its_midside_nodes(void **unused)
     (void)unused;
     struct wb_solid_mesh mesh;
     double worst = (double)INFINITY;
-    assert_int_equal(wb_solid_mesh_block(&mesh, 2, 3, 4, NULL, NULL), WB_OK);
+    test_block_mesh(&mesh, 2, 3, 4, NULL, NULL);
     check_layers(&mesh);
     assert_int_equal(coinciding(&mesh), 0);
     assert_int_equal(mesh.n_elements, 24);
@@ -475,7 +475,7 @@ static void block_is_mapped_with_its_midside_nodes(void **unused)
     assert_close(worst, 1.0, 1e-6);
     wb_solid_mesh_release(&mesh);
 
-    assert_int_equal(wb_solid_mesh_block(&mesh, 2, 4, 1, quarter_ring, NULL), WB_OK);
+    test_block_mesh(&mesh, 2, 4, 1, quarter_ring, NULL);
     check_layers(&mesh);
     assert_close_relative(volume(&mesh, 0, NULL), 0.25 * M_PI * 3.0 * 3.0, 1e-4);
     for (int i = mesh.link[2]; i < mesh.n_nodes; i++)
@@ -494,12 +494,6 @@ static void empty_mesh_has_one_layer(void **unused)
     assert_int_equal(mesh.part[0], 0);
     wb_solid_mesh_release(&mesh);
     wb_solid_mesh_release(&mesh);
-}
-
-static void nowhere(void *context, const double unit[3], double position[3])
-{
-    (void)context;
-    position[0] = position[1] = position[2] = 1.0 / (unit[0] - 1.0);
 }
 
 static void invalid_meshes_are_rejected(void **unused)
@@ -530,9 +524,7 @@ static void invalid_meshes_are_rejected(void **unused)
         assert_int_equal(mesh.n_nodes, -7);
     }
     assert_int_equal(wb_solid_mesh_init(&mesh, 0, 1), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_solid_mesh_block(&mesh, 0, 1, 1, NULL, NULL), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_solid_mesh_block(&mesh, 1, 1, 1, nowhere, NULL), WB_ERR_ARGUMENT);
-    assert_int_equal(wb_solid_mesh_block(&mesh, 1, 2, 1, NULL, NULL), WB_OK);
+    test_block_mesh(&mesh, 1, 2, 1, NULL, NULL);
     assert_int_equal(wb_solid_mesh_section(&mesh, 0.0, &faces, &n), WB_ERR_ARGUMENT);
     wb_solid_mesh_release(&mesh);
     wb_log_set_sink(NULL, NULL);
