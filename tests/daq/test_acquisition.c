@@ -190,7 +190,7 @@ static void stall_at_every_40th(void *context, const struct wb_load_sample *samp
     int *const n = context;
     (void)sample;
     if (++*n % 40 == 0)
-        wb_virtual_time_stall(30 * MS);
+        wb_time_sleep(wb_time_now_ns() + 30 * MS);
 }
 
 struct stamps {

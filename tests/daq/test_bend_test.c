@@ -365,7 +365,7 @@ static void own_stall_does_not_count_as_silence(void **state)
     fake_write_rig(fixture->rig, true, 0.25);
     open_and_get_down(fixture, &test);
     /* Longer than the stage, which is asked for its reports, may be silent. */
-    wb_virtual_time_stall(1200 * MS);
+    wb_time_sleep(wb_time_now_ns() + 1200 * MS);
     assert_false(run(test, NULL));
     assert_int_equal(wb_bend_test_close(test, &result), WB_OK);
     if (result.end != WB_SEQUENCE_DONE)
@@ -389,7 +389,7 @@ static void stall_once(void *context, const struct wb_load_sample *sample)
     if (staller->stalled || staller->bench->position_mm < 5.0)
         return;
     staller->stalled = true;
-    wb_virtual_time_stall(800 * MS);
+    wb_time_sleep(wb_time_now_ns() + 800 * MS);
 }
 
 static void stall_within_a_step_does_not_count_as_silence(void **state)

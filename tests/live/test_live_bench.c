@@ -300,7 +300,7 @@ static void draw_on_the_way(struct show *show)
         drawn_at_the_end = true;
         draw(show, 40, 110, true);
         assert_shows(show, "\n done ");
-        wb_virtual_time_stall(3 * WB_NS_PER_S);
+        wb_time_sleep(wb_time_now_ns() + 3 * WB_NS_PER_S);
         draw(show, 40, 110, true);
         assert_shows(show, "NO DATA FOR 3 s");
     }

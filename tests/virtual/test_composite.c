@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "fixtures/virtual/composite_private.h"
 #include "tests/virtual/setup.h"
 
 static int errors;
@@ -25,7 +24,8 @@ static void the_section_is_core_and_jacket(void **state)
         struct setup setup;
         struct wb_section section;
         setup_bench(&setup, specimens[i], 1);
-        assert_int_equal(wb_composite_build(&setup.composite, &setup.wire, 1.0, 1.0, 12, &section),
+        assert_int_equal(wb_composite_build_variant(&setup.composite, WB_COMPOSITE_KINEMATIC,
+                                                    &setup.wire, 1.0, 1.0, 12, NULL, &section),
                          WB_OK);
         double area = 0.0, stiffness = 0.0;
         for (int k = 0; k < section.n_fibres; k++) {
@@ -53,9 +53,11 @@ static void scatter_multiplies_stiffness_and_yield(void **state)
     struct setup setup;
     struct wb_section plain, other;
     setup_bench(&setup, "type1-L85-1", 1);
-    assert_int_equal(wb_composite_build(&setup.composite, &setup.wire, 1.0, 1.0, 12, &plain),
+    assert_int_equal(wb_composite_build_variant(&setup.composite, WB_COMPOSITE_KINEMATIC,
+                                                &setup.wire, 1.0, 1.0, 12, NULL, &plain),
                      WB_OK);
-    assert_int_equal(wb_composite_build(&setup.composite, &setup.wire, 1.1, 0.8, 12, &other),
+    assert_int_equal(wb_composite_build_variant(&setup.composite, WB_COMPOSITE_KINEMATIC,
+                                                &setup.wire, 1.1, 0.8, 12, NULL, &other),
                      WB_OK);
     for (int i = 0; i < plain.n_materials; i++) {
         assert_close_relative(other.materials[i].youngs_modulus,

@@ -1,7 +1,7 @@
 #include "fixtures/virtual/live_wire.h"
 
 #include "fe/trial/cantilever.h"
-#include "fixtures/virtual/composite_private.h"
+#include "fixtures/virtual/composite.h"
 #include "tests/virtual/setup.h"
 
 static struct wb_live_wire *make(const struct setup *setup,
@@ -254,7 +254,8 @@ static void kinematic_hardening_affects_unloading_only(void **state)
         struct wb_cantilever *cantilever;
         struct wb_cantilever_model model;
         struct wb_cantilever_point point;
-        assert_int_equal(wb_composite_build(&setup.composite, &setup.wire, 1.0, 1.0, 12, &section),
+        assert_int_equal(wb_composite_build_variant(&setup.composite, WB_COMPOSITE_KINEMATIC,
+                                                    &setup.wire, 1.0, 1.0, 12, NULL, &section),
                          WB_OK);
         for (int i = 0; isotropic && i < section.n_materials; i++)
             if (section.materials[i].hardening == WB_HARDENING_KINEMATIC_LINEAR) {

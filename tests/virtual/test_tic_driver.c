@@ -159,7 +159,7 @@ static void switch_on(struct drive *drive, int down)
     memset(drive, 0, sizeof *drive);
     drive->rig = (struct wb_rig){.time_scale = 1.0,
                                  .stage = {.down = down, .steps = 3200e3, .speed = 1.0 * WB_MM}};
-    const struct wb_sim_tic_settings settings = {
+    const struct wb_sim_stage_settings settings = {
         .down = down, .steps = 3200e3, .clamp.travel = 60.0 * WB_MM};
     wb_sim_tic_init(&drive->tic, &settings);
     drive->driver = calloc(1, wb_stage_tic.state_size);

@@ -13,7 +13,7 @@
 #include "base/file.h"
 #include "base/units.h"
 #include "fe/trial/cantilever.h"
-#include "fixtures/virtual/composite_private.h"
+#include "fixtures/virtual/composite.h"
 
 #define WB_LOG_DOMAIN "tune"
 
@@ -93,7 +93,8 @@ static double distance(const gsl_vector *x, void *context)
     struct wb_section section;
     double force[POINTS + 1], sum = 0.0;
     compose(&fit->wire, exp(gsl_vector_get(x, 0)), exp(gsl_vector_get(x, 1)), &composite);
-    if (wb_composite_build(&composite, &fit->wire, 1.0, 1.0, 12, &section) != WB_OK)
+    if (wb_composite_build_variant(&composite, WB_COMPOSITE_KINEMATIC, &fit->wire, 1.0, 1.0, 12,
+                                   NULL, &section) != WB_OK)
         return 1e3;
     const int failed = curve(&fit->wire, &section, force);
     wb_section_release(&section);
