@@ -21,8 +21,14 @@ enum {
 /* Newton iterations are scaled down so that no node rotates by more than this, rad. */
 static const double max_iteration_rotation = 0.5;
 
-/* An increment fails after this many scaled-down iterations. */
-static const int max_scaled_down = 3;
+/* An increment fails after this many iterations, or this many scaled-down ones. */
+static const int max_iterations = 25, max_scaled_down = 3;
+
+/* Largest residual over the largest internal force. */
+static const double force_tolerance = 1e-9;
+
+/* Smallest increment as a fraction of the move. */
+static const double smallest_increment = 1e-5;
 
 /* Why an increment failed. */
 enum failure {
@@ -50,7 +56,6 @@ struct step {
 
 struct wb_rod_solver {
     struct wb_rod_solver_model model;
-    struct wb_rod_solver_settings settings;
     double scale_force;
 
     /* The last equilibrium. */
@@ -72,30 +77,10 @@ struct wb_rod_solver {
     struct found found;
 };
 
-static struct wb_rod_solver_settings complete_settings(const struct wb_rod_solver_settings *given)
-{
-    struct wb_rod_solver_settings s = {0};
-    if (given)
-        s = *given;
-    if (s.force_tolerance == 0.0)
-        s.force_tolerance = 1e-9;
-    if (s.smallest_increment == 0.0)
-        s.smallest_increment = 1e-5;
-    if (s.largest_increment == 0.0)
-        s.largest_increment = 1.0;
-    if (s.most_rotation == 0.0)
-        s.most_rotation = 0.25;
-    if (s.max_iterations == 0)
-        s.max_iterations = 25;
-    return s;
-}
-
 enum wb_status wb_rod_solver_create(struct wb_rod_solver **out,
-                                    const struct wb_rod_solver_model *model,
-                                    const struct wb_rod_solver_settings *settings)
+                                    const struct wb_rod_solver_model *model)
 {
     *out = NULL;
-    const struct wb_rod_solver_settings s = complete_settings(settings);
     if (!(isfinite(model->length) && model->length > 0.0))
         return wb_fail(WB_ERR_ARGUMENT, "length %g m: expected a number above 0", model->length);
     if (!(isfinite(model->strand_length) && model->strand_length >= 0.0 &&
@@ -103,18 +88,11 @@ enum wb_status wb_rod_solver_create(struct wb_rod_solver **out,
         return wb_fail(WB_ERR_ARGUMENT,
                        "the strand is %g m long at x = %g m: expected a length of 0 or more",
                        model->strand_length, model->strand_x);
-    if (!(s.force_tolerance > 0.0 && s.smallest_increment > 0.0 && s.largest_increment > 0.0 &&
-          s.most_rotation > 0.0 && s.max_iterations > 0))
-        return wb_fail(
-            WB_ERR_ARGUMENT,
-            "rod solver: force_tolerance %g, smallest_increment %g, largest_increment %g, "
-            "most_rotation %g, max_iterations %d: expected numbers above 0",
-            s.force_tolerance, s.smallest_increment, s.largest_increment, s.most_rotation,
-            s.max_iterations);
 
     struct wb_rod_solver *const solver = wb_memory_new(1, sizeof *solver);
     solver->model = *model;
-    solver->settings = s;
+    if (model->most_rotation == 0.0)
+        solver->model.most_rotation = 0.25;
     solver->scale_force = wb_rod_scale_force(model->rod);
     solver->fraction = 1.0;
     *out = solver;
@@ -212,7 +190,7 @@ static bool check_balance(struct wb_rod_solver *s, const struct step *step, stru
     s->residual = unbalanced / scale;
     if (isfinite(s->residual))
         s->found = (struct found){s->residual, s->balance.worst_place, s->balance.yielding};
-    s->tolerance = s->settings.force_tolerance * scale + wb_rod_noise(s->model.rod);
+    s->tolerance = force_tolerance * scale + wb_rod_noise(s->model.rod);
     return unbalanced <= s->tolerance && fabs(deflection_error(s, step)) <= 1e-11 * s->model.length;
 }
 
@@ -271,7 +249,7 @@ static bool iterate(struct wb_rod_solver *s, const struct step *step)
         if (check_balance(s, step, &strand, r))
             return true;
         s->failure = isfinite(s->residual) ? ITERATIONS : NOT_FINITE;
-        if (iteration == s->settings.max_iterations || scaled_down == max_scaled_down ||
+        if (iteration == max_iterations || scaled_down == max_scaled_down ||
             s->failure == NOT_FINITE)
             return false;
 
@@ -334,7 +312,7 @@ static void start_loads(struct wb_rod_solver *s, const struct step *step)
 static bool rotation_is_allowed(struct wb_rod_solver *s)
 {
     s->trial_turn = wb_rod_turn(s->model.rod);
-    if (s->trial_turn <= s->settings.most_rotation)
+    if (s->trial_turn <= s->model.most_rotation)
         return true;
     s->failure = TURNED;
     return false;
@@ -476,7 +454,7 @@ static double choose_increment(const struct wb_rod_solver *s, const struct wb_ro
     if (last == 0.0 || square == 0.0)
         return 1.0;
     const double turn = s->turn * sqrt(square / last);
-    return (1.0 - done) / fmax(1.0, ceil(turn / (0.8 * s->settings.most_rotation)));
+    return (1.0 - done) / fmax(1.0, ceil(turn / (0.8 * s->model.most_rotation)));
 }
 
 static void loads_between(const struct wb_rod_loads *from, const struct wb_rod_loads *to,
@@ -508,7 +486,7 @@ static void describe_problem(const struct wb_rod_solver *s, double fraction,
         snprintf(result->problem, sizeof result->problem,
                  "a section rotates by more than %.2g rad in an increment of %.1g of the move: no "
                  "equilibrium nearby",
-                 s->settings.most_rotation, fraction);
+                 s->model.most_rotation, fraction);
         return;
     }
     if (s->failure == CRITICAL) {
@@ -543,7 +521,7 @@ enum wb_status wb_rod_solver_move(struct wb_rod_solver *s, const struct wb_rod_m
 
     const struct wb_rod_loads from = s->loads;
     const double start = s->deflection;
-    double fraction = fmin(s->settings.largest_increment, 4.0 * s->fraction);
+    double fraction = fmin(1.0, 4.0 * s->fraction);
     bool failed = false;
 
     while (result->fraction < 1.0) {
@@ -562,7 +540,7 @@ enum wb_status wb_rod_solver_move(struct wb_rod_solver *s, const struct wb_rod_m
             s->fraction = fraction;
             result->fraction = next;
             result->increments++;
-            fraction = fmin(s->settings.largest_increment, failed ? fraction : 2.0 * fraction);
+            fraction = fmin(1.0, failed ? fraction : 2.0 * fraction);
             failed = false;
             if (move->observer && !move->observer(move->context, next, s->iterations)) {
                 result->end = WB_ROD_STOPPED;
@@ -573,7 +551,7 @@ enum wb_status wb_rod_solver_move(struct wb_rod_solver *s, const struct wb_rod_m
         failed = true;
         result->cutbacks++;
         fraction *= 0.5;
-        if (fraction < s->settings.smallest_increment) {
+        if (fraction < smallest_increment) {
             result->end = WB_ROD_NOT_CONVERGED;
             describe_problem(s, 2.0 * fraction, result);
             return_to_last(s);

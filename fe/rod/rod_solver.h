@@ -29,14 +29,7 @@ struct wb_rod_solver_model {
     double length;        /* m: length of the rod, to compare moments with forces */
     double strand_length; /* m; 0: a vertical force prescribes the deflection */
     double strand_x;      /* m */
-};
-
-struct wb_rod_solver_settings {
-    double force_tolerance;    /* largest residual over the largest internal force; 0: 1e-9 */
-    double smallest_increment; /* fraction of a move; 0: 1e-5 */
-    double largest_increment;  /* 0: 1 */
-    double most_rotation;      /* largest rotation of any section in an increment, rad; 0: 0.25 */
-    int max_iterations;        /* 0: 25 */
+    double most_rotation; /* largest rotation of any section in an increment, rad; 0: 0.25 */
 };
 
 /* All loads. */
@@ -77,10 +70,9 @@ struct wb_rod_result {
 
 struct wb_rod_solver; /* opaque */
 
-/* `settings` may be NULL. On failure *out is NULL. */
+/* On failure *out is NULL. */
 WB_MUST_CHECK enum wb_status wb_rod_solver_create(struct wb_rod_solver **out,
-                                                  const struct wb_rod_solver_model *model,
-                                                  const struct wb_rod_solver_settings *settings);
+                                                  const struct wb_rod_solver_model *model);
 void wb_rod_solver_destroy(struct wb_rod_solver *solver); /* accepts NULL */
 
 /* Returns to the virgin rod without loads. */

@@ -101,8 +101,6 @@ static struct wb_solid_settings complete_settings(const struct wb_solid_settings
     s.first_increment = s.first_increment == 0.0 ? 1.0 : s.first_increment;
     s.smallest_increment = s.smallest_increment == 0.0 ? 1e-5 : s.smallest_increment;
     s.largest_increment = s.largest_increment == 0.0 ? 1.0 : s.largest_increment;
-    s.most_rotation = s.most_rotation == 0.0 ? 0.25 : s.most_rotation;
-    s.max_iterations = s.max_iterations == 0 ? 12 : s.max_iterations;
     return s;
 }
 
@@ -184,6 +182,8 @@ static const double good_reduction = 0.2;
 /* A state counts as equilibrium before the first iteration only below this fraction of the
  * tolerance. */
 static const double initial_fraction = 1e-3;
+
+static const int max_iterations = 12;
 
 /* An iteration rotates the tip by at most this, rad. */
 static const double max_iteration_rotation = 0.5;
@@ -645,7 +645,7 @@ static bool find_equilibrium(struct wb_solid *solid, struct increment *increment
     while (!has_converged(solid, increment) || (solid->iterations == 0 && !at_once)) {
         struct step step;
         const double before = solid->residual;
-        if (solid->iterations++ == solid->settings.max_iterations)
+        if (solid->iterations++ == max_iterations)
             return fail(solid, "no convergence");
         const bool first = solid->iterations == 1;
         if (!solve_step(solid, increment, first, &step))
@@ -676,6 +676,9 @@ static bool find_equilibrium(struct wb_solid *solid, struct increment *increment
 /* Wanted number of iterations per increment: increments grow if fewer are needed and shrink if
  * more. */
 static const double wanted_iterations = 6.0;
+
+/* Largest rotation of the tip in an increment, rad. */
+static const double most_rotation = 0.25;
 
 /* A strand's tension above minus this fraction of the largest nodal force counts as zero. */
 static const double tension_tolerance = 1e-6;
@@ -827,8 +830,8 @@ static double next_pace(const struct wb_solid *solid, const struct increment *in
     double growth = sqrt(wanted_iterations / fmax(1.0, solid->iterations));
 
     growth = fmin(2.0, fmax(0.5, growth));
-    if (tip_rotation(increment) * growth > solid->settings.most_rotation)
-        growth = fmax(0.5, solid->settings.most_rotation / tip_rotation(increment));
+    if (tip_rotation(increment) * growth > most_rotation)
+        growth = fmax(0.5, most_rotation / tip_rotation(increment));
     return fmin(solid->settings.largest_increment, pace * growth);
 }
 
@@ -880,9 +883,9 @@ static enum wb_solid_end judge(struct wb_solid *solid, const struct increment *i
         *pace = 0.5 * tried;
         return WB_SOLID_NOT_CONVERGED;
     }
-    if (rotation > 2.0 * solid->settings.most_rotation) {
+    if (rotation > 2.0 * most_rotation) {
         /* Rotation too large for path-dependent plasticity. */
-        *pace = tried * solid->settings.most_rotation / rotation;
+        *pace = tried * most_rotation / rotation;
         snprintf(solid->problem, sizeof solid->problem,
                  "the tip rotates by %.2g rad between %.6g and %.6g of the move: no equilibrium "
                  "nearby",

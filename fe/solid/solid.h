@@ -24,8 +24,6 @@ struct wb_solid_settings {
     double first_increment;    /* share of a move; 0: 1 */
     double smallest_increment; /* 0: 1e-5 */
     double largest_increment;  /* 0: 1 */
-    double most_rotation;      /* largest rotation of the tip in an increment, rad; 0: 0.25 */
-    int max_iterations;        /* 0: 12 */
 };
 
 /* All loads. */

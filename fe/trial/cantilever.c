@@ -25,8 +25,13 @@ enum {
 /* Newton iterations are scaled down so that no node rotates by more than this, rad. */
 static const double max_iteration_rotation = 0.5;
 
-/* A step fails after this many scaled-down iterations. */
-static const int max_scaled_down = 3;
+/* A step fails after this many iterations, or this many scaled-down ones. */
+static const int max_iterations = 25, max_scaled_down = 3;
+
+/* Smallest sub-step as a fraction of the move. */
+static const double smallest_step = 1e-4;
+
+static const double default_force_tolerance = 1e-12;
 
 /* Loads applied at the tip. */
 struct loads {
@@ -51,7 +56,7 @@ struct state {
 struct wb_cantilever {
     /* Section and curvature are cleared: they are borrowed during creation. */
     struct wb_cantilever_model model;
-    struct wb_cantilever_settings settings;
+    double force_tolerance; /* largest residual over the largest internal force */
     struct wb_beam *beam;
     struct state state, saved;
     int n_materials;
@@ -84,22 +89,7 @@ void wb_cantilever_default_model(struct wb_cantilever_model *model)
     *model = (struct wb_cantilever_model){.gravity_y = -WB_STANDARD_GRAVITY};
 }
 
-static struct wb_cantilever_settings complete_settings(const struct wb_cantilever_settings *given)
-{
-    struct wb_cantilever_settings s = {0};
-    if (given)
-        s = *given;
-    if (s.force_tolerance == 0.0)
-        s.force_tolerance = 1e-12;
-    if (s.max_iterations == 0)
-        s.max_iterations = 25;
-    if (s.smallest_step == 0.0)
-        s.smallest_step = 1e-4;
-    return s;
-}
-
-static enum wb_status check_model(const struct wb_cantilever_model *m,
-                                  const struct wb_cantilever_settings *s)
+static enum wb_status check_model(const struct wb_cantilever_model *m)
 {
     if (!m->section)
         return wb_fail(WB_ERR_ARGUMENT, "the model has no section");
@@ -118,12 +108,6 @@ static enum wb_status check_model(const struct wb_cantilever_model *m,
             WB_ERR_ARGUMENT,
             "rest_level %g m, strand_length %g m: a rest needs a finite level and a strand",
             m->rest_level, m->strand_length);
-    if (!(s->force_tolerance > 0.0 && s->max_iterations > 0 && s->smallest_step > 0.0))
-        return wb_fail(
-            WB_ERR_ARGUMENT,
-            "cantilever solver: force_tolerance %g, max_iterations %d, smallest_step %g: "
-            "expected numbers above 0",
-            s->force_tolerance, s->max_iterations, s->smallest_step);
     return WB_OK;
 }
 
@@ -132,8 +116,7 @@ enum wb_status wb_cantilever_create(struct wb_cantilever **out,
                                     const struct wb_cantilever_settings *settings)
 {
     *out = NULL;
-    const struct wb_cantilever_settings complete = complete_settings(settings);
-    WB_TRY(check_model(model, &complete));
+    WB_TRY(check_model(model));
 
     const struct wb_beam_model beam = {
         .section = model->section,
@@ -148,7 +131,7 @@ enum wb_status wb_cantilever_create(struct wb_cantilever **out,
     WB_TRY(wb_beam_create(&created, &beam));
     struct wb_cantilever *const c = wb_memory_new(1, sizeof *c);
     c->model = *model;
-    c->settings = complete;
+    c->force_tolerance = settings ? settings->force_tolerance : default_force_tolerance;
     c->beam = created;
     c->model.section = NULL;
     c->duration = (double)INFINITY;
@@ -334,7 +317,7 @@ static bool check_balance(struct wb_cantilever *c, const struct step *step, stru
     const double reach = 1e-11 * c->model.length;
 
     c->residual = unbalanced / scale;
-    c->tolerance = c->settings.force_tolerance * scale + wb_beam_noise(c->beam);
+    c->tolerance = c->force_tolerance * scale + wb_beam_noise(c->beam);
     return unbalanced <= c->tolerance && fabs(miss.control) <= reach && fabs(miss.rest) <= reach;
 }
 
@@ -445,8 +428,7 @@ static bool solve(struct wb_cantilever *c, const struct step *step)
         if (check_balance(c, step, &strand, r))
             return step->control != WB_CONTROL_FOLLOWER_DEFLECTION ||
                    follower_force_rises(c, step, &strand);
-        if (iteration == c->settings.max_iterations || scaled_down == max_scaled_down ||
-            !isfinite(c->residual))
+        if (iteration == max_iterations || scaled_down == max_scaled_down || !isfinite(c->residual))
             return false;
 
         double A[MAX_UNKNOWNS * MAX_UNKNOWNS], b[MAX_UNKNOWNS];
@@ -719,7 +701,7 @@ enum wb_status wb_cantilever_move(struct wb_cantilever *c, enum wb_cantilever_co
         }
         failed = true;
         fraction *= 0.5;
-        if (fraction < c->settings.smallest_step) {
+        if (fraction < smallest_step) {
             point->end = WB_CANTILEVER_NOT_CONVERGED;
             break;
         }

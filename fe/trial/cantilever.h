@@ -58,9 +58,7 @@ struct wb_cantilever_model {
 };
 
 struct wb_cantilever_settings {
-    double force_tolerance; /* largest residual over the largest internal force; 0: 1e-12 */
-    int max_iterations;     /* per step; 0: 25 */
-    double smallest_step;   /* smallest sub-step as a fraction of the move; 0: 1e-4 */
+    double force_tolerance; /* largest residual over the largest internal force; above 0 */
 };
 
 enum wb_cantilever_end {
@@ -92,7 +90,8 @@ struct wb_cantilever; /* opaque: model copy, mesh, state, workspace */
 /* All zero except for standard gravity, (0, -9.80665). */
 void wb_cantilever_default_model(struct wb_cantilever_model *model);
 
-/* Allocates all memory. `settings` may be NULL. On failure *out is NULL. */
+/* Allocates all memory. `settings` may be NULL: a force tolerance of 1e-12. On failure *out is
+ * NULL. */
 WB_MUST_CHECK enum wb_status wb_cantilever_create(struct wb_cantilever **out,
                                                   const struct wb_cantilever_model *model,
                                                   const struct wb_cantilever_settings *settings);

@@ -63,7 +63,7 @@ static enum wb_status make_rod(struct wb_wire1d *wire)
         .strand_length = m->strand_length,
         .strand_x = m->length,
     };
-    return wb_rod_solver_create(&wire->solver, &solver, NULL);
+    return wb_rod_solver_create(&wire->solver, &solver);
 }
 
 enum wb_status wb_wire1d_create(struct wb_wire1d **out, const struct wb_wire_model *model,

@@ -45,9 +45,9 @@ static inline struct test_rod test_rod_make(const struct test_rod_plan *plan)
         .length = plan->length,
         .strand_length = plan->strand_length,
         .strand_x = plan->length,
+        .most_rotation = plan->most_rotation,
     };
-    const struct wb_rod_solver_settings settings = {.most_rotation = plan->most_rotation};
-    assert_int_equal(wb_rod_solver_create(&t.solver, &solver, &settings), WB_OK);
+    assert_int_equal(wb_rod_solver_create(&t.solver, &solver), WB_OK);
     return t;
 }
 

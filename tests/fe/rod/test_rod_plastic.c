@@ -132,7 +132,7 @@ static struct test_rod make_8awg(int n_rings, int n_around)
         .section = t.section, .length = 0.1, .n_elements = 50, .has_balance = true};
     assert_int_equal(wb_rod_create(&t.rod, &model), WB_OK);
     const struct wb_rod_solver_model solver = {.rod = t.rod, .length = 0.1};
-    assert_int_equal(wb_rod_solver_create(&t.solver, &solver, NULL), WB_OK);
+    assert_int_equal(wb_rod_solver_create(&t.solver, &solver), WB_OK);
     return t;
 }
 
