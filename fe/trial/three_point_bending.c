@@ -62,7 +62,7 @@ struct state {
 };
 
 struct wb_three_point_bending {
-    /* Section and curvature are cleared: they are borrowed during creation. */
+    /* The section is cleared: it is borrowed during creation. */
     struct wb_three_point_bending_model model;
     struct wb_beam *beam;
     int n_nodes, middle; /* the node held at x = 0 */
@@ -74,8 +74,6 @@ struct wb_three_point_bending {
     double nose_radius; /* including half the wire's diameter, m */
     double nose_level;  /* y of the nose's axis at first contact, m */
     double stiffness;   /* of contacts, N/m */
-    double (*natural_curvature)(void *, double);
-    void *curvature_context;
     struct state state;
 
     /* The trial step. */
@@ -95,7 +93,7 @@ struct wb_three_point_bending {
 static double curvature_of(void *context, double arc)
 {
     const struct wb_three_point_bending *b = context;
-    return b->natural_curvature(b->curvature_context, arc - b->middle_arc);
+    return b->model.natural_curvature(b->model.curvature_context, arc - b->middle_arc);
 }
 
 static enum wb_status check_model(const struct wb_three_point_bending_model *m)
@@ -256,8 +254,6 @@ enum wb_status wb_three_point_bending_create(struct wb_three_point_bending **out
                 .stiffness = roller_stiffness * stiffness,
                 .sticking = sticking_stiffness * stiffness,
             };
-        b->natural_curvature = model->natural_curvature;
-        b->curvature_context = model->curvature_context;
         if (model->natural_curvature)
             status = wb_beam_set_curvature(b->beam, curvature_of, b);
         if (status == WB_OK)
@@ -301,8 +297,8 @@ enum wb_status wb_three_point_bending_set_curvature(struct wb_three_point_bendin
                                                                                 double from_middle),
                                                     void *context)
 {
-    bending->natural_curvature = natural_curvature;
-    bending->curvature_context = context;
+    bending->model.natural_curvature = natural_curvature;
+    bending->model.curvature_context = context;
     WB_TRY(wb_beam_set_curvature(bending->beam, natural_curvature ? curvature_of : NULL, bending));
     return start_at_rest(bending);
 }

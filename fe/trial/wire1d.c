@@ -8,11 +8,8 @@
 #include "base/memory.h"
 #include "fe/rod/rod_solver.h"
 
-#define WB_LOG_DOMAIN "wire1d"
-
 enum {
-    DEFAULT_ELEMENTS = 50,
-    MAX_SHAPE = 1000 /* positions of a run's shape; see fe/trial/wire_run.h */
+    DEFAULT_ELEMENTS = 50
 };
 
 struct wb_wire1d {
@@ -21,7 +18,6 @@ struct wb_wire1d {
     struct wb_rod_section *section;
     struct wb_rod *rod;
     struct wb_rod_solver *solver;
-    double (*shape)[3]; /* (MAX_SHAPE) workspace */
 };
 
 /* A run in progress. */
@@ -78,7 +74,6 @@ enum wb_status wb_wire1d_create(struct wb_wire1d **out, const struct wb_wire_mod
     struct wb_wire1d *const wire = wb_memory_new(1, sizeof *wire);
     wire->model = model;
     wire->n_elements = given.n_elements == 0 ? DEFAULT_ELEMENTS : given.n_elements;
-    wire->shape = wb_memory_new(MAX_SHAPE, sizeof *wire->shape);
     enum wb_status status = make_section(wire, &layout);
     if (status == WB_OK)
         status = make_rod(wire);
@@ -96,7 +91,6 @@ void wb_wire1d_destroy(struct wb_wire1d *wire)
     wb_rod_solver_destroy(wire->solver);
     wb_rod_destroy(wire->rod);
     wb_rod_section_destroy(wire->section);
-    free(wire->shape);
     free(wire);
 }
 
@@ -127,10 +121,9 @@ static void add_row(struct run *r, double fraction)
                            wb_rod_solver_vertical_force(wire->solver), (const double(*)[3])frame);
     for (int k = 0; k < run->n_shape; k++) {
         const struct wb_rod_node at = wb_rod_position(wire->rod, run->shape_s[k]);
-        memcpy(wire->shape[k], at.position, sizeof wire->shape[k]);
+        memcpy(run->axis[k], at.position, sizeof run->axis[k]);
     }
-    wb_wire_run_end_row(&r->at, &row, wb_rod_solver_is_slack(wire->solver),
-                        (const double(*)[3])wire->shape);
+    wb_wire_run_end_row(&r->at, &row, wb_rod_solver_is_slack(wire->solver));
 }
 
 /* Called by wb_rod_solver_move() after each increment. */
@@ -229,9 +222,6 @@ enum wb_status wb_wire1d_run(struct wb_wire1d *wire, struct wb_wire_run *run,
         .at = {.run = run, .model = wire->model, .observer = observer, .status = WB_OK},
     };
 
-    if (run->n_shape > MAX_SHAPE)
-        return wb_fail(WB_ERR_ARGUMENT, "%d positions of a shape: expected at most %d",
-                       run->n_shape, MAX_SHAPE);
     run->n_elements = wire->n_elements;
     run->n_unknowns = 2 * WB_ROD_ELEMENT_UNKNOWNS * wire->n_elements;
     run->converged = begin(&r);

@@ -7,7 +7,6 @@
 
 #include "base/interpolate.h"
 #include "base/memory.h"
-#include "base/units.h"
 #include "fe/solid/solid.h"
 
 /* Arc-length increment past a limit point, relative to the wire's length, and maximum number of
@@ -33,9 +32,8 @@ struct wb_wire3d {
 struct run {
     struct wb_wire3d *wire;
     struct wb_wire_progress at;
-    double (*shape)[3]; /* (n_shape) workspace */
-    bool slack;         /* the strand carries no force */
-    double held;        /* deflection at which the strand would become taut, m */
+    bool slack;  /* the strand carries no force */
+    double held; /* deflection at which the strand would become taut, m */
 };
 
 static enum wb_status make_mesh(struct wb_wire3d *wire)
@@ -160,8 +158,8 @@ static void add_row(struct run *r, double fraction)
     wb_wire_run_set_forces(&row, model, loads->tension, loads->tension * sqrt(1.0 - lean * lean),
                            (const double(*)[3])tip.frame);
     for (int k = 0; k < r->at.run->n_shape; k++)
-        axis_at(wire, r->at.run->shape_s[k], r->shape[k]);
-    wb_wire_run_end_row(&r->at, &row, r->slack, (const double(*)[3])r->shape);
+        axis_at(wire, r->at.run->shape_s[k], r->at.run->axis[k]);
+    wb_wire_run_end_row(&r->at, &row, r->slack);
 }
 
 /* Called by wb_solid_move() after each increment. */
@@ -377,7 +375,6 @@ enum wb_status wb_wire3d_run(struct wb_wire3d *wire, struct wb_wire_run *run,
     if (wire->has_run)
         WB_TRY(begin_anew(wire));
     wire->has_run = true;
-    r.shape = wb_memory_new((size_t)run->n_shape, sizeof *r.shape);
     run->n_elements = wire->mesh.n_elements;
     run->n_unknowns = wb_solid_unknowns(wire->solid);
     run->converged = begin(&r);
@@ -385,7 +382,6 @@ enum wb_status wb_wire3d_run(struct wb_wire3d *wire, struct wb_wire_run *run,
         run->converged = run_step(&r);
     if (run->stopped)
         run->converged = true;
-    free(r.shape);
     return r.at.status;
 }
 

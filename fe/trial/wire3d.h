@@ -4,8 +4,6 @@
 #ifndef WB_FE_TRIAL_WIRE3D_H
 #define WB_FE_TRIAL_WIRE3D_H
 
-#include <stddef.h>
-
 #include "base/status.h"
 #include "fe/model/wire_model.h"
 #include "fe/solid/solid_mesh.h"

@@ -35,6 +35,7 @@ enum wb_status wb_wire_run_init(struct wb_wire_run *run, const struct wb_wire_mo
     run->rows = wb_memory_new(rows, sizeof *run->rows);
     run->shape_s = wb_memory_new(n, sizeof *run->shape_s);
     run->shape = wb_memory_new(rows * n, sizeof *run->shape);
+    run->axis = wb_memory_new(n, sizeof *run->axis);
     run->capacity = (int)rows;
     run->n_shape = n_shape;
     for (int i = 0; i < n_shape; i++)
@@ -49,6 +50,7 @@ void wb_wire_run_release(struct wb_wire_run *run)
     free(run->rows);
     free(run->shape_s);
     free(run->shape);
+    free(run->axis);
     *run = (struct wb_wire_run){0};
 }
 
@@ -151,13 +153,12 @@ void wb_wire_run_set_forces(struct wb_wire_row *row, const struct wb_wire_model 
     row->vertical_force = row->tension;
 }
 
-void wb_wire_run_end_row(struct wb_wire_progress *p, struct wb_wire_row *row, bool slack,
-                         const double (*shape)[3])
+void wb_wire_run_end_row(struct wb_wire_progress *p, struct wb_wire_row *row, bool slack)
 {
     row->step = p->step;
     row->increments = p->increments;
     row->iterations = p->iterations;
-    wb_wire_run_add(p->run, p->model, row, slack, shape);
+    wb_wire_run_add(p->run, p->model, row, slack, (const double(*)[3])p->run->axis);
     p->increments = p->iterations = 0;
     if (p->observer && p->observer->row)
         p->status = p->observer->row(p->observer->context, p->run, row->fraction == 1.0);

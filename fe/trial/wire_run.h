@@ -36,6 +36,7 @@ struct wb_wire_run {
     int n_shape;
     double *shape_s;                      /* (n_shape) m, reference arc lengths, owned */
     double (*shape)[3];                   /* (n_rows x n_shape), m, owned */
+    double (*axis)[3];                    /* (n_shape) m, workspace: shape of the next row, owned */
     bool converged;                       /* false: the rows end early */
     bool stopped;                         /* by the observer */
     char problem[320];                    /* where and why it did not converge; "" otherwise */
@@ -103,9 +104,8 @@ void wb_wire_run_set_forces(struct wb_wire_row *row, const struct wb_wire_model 
                             double tension, double vertical, const double frame[3][3]);
 
 /* Appends a row that has fraction, loads, tip, tangent and forces, and fills in step, cycle, phase,
- * angle, force. `slack`: the strand carries no force. `shape` is (n_shape x 3). Calls the observer
+ * angle, force. `slack`: the strand carries no force. The shape is in run->axis. Calls the observer
  * and keeps its status. */
-void wb_wire_run_end_row(struct wb_wire_progress *progress, struct wb_wire_row *row, bool slack,
-                         const double (*shape)[3]);
+void wb_wire_run_end_row(struct wb_wire_progress *progress, struct wb_wire_row *row, bool slack);
 
 #endif

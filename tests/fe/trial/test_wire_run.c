@@ -245,7 +245,7 @@ static void increments_are_counted_and_reported_as_fractions_of_the_step(void **
     assert_true(wb_wire_run_end_increment(&at, (double[3]){1.0, 0.0, 0.0}, 1.0, 4));
     assert_close(observed.fraction, 0.0, 0.0);
     struct wb_wire_row row = {.fraction = 0.0, .tangent = {1.0, 0.0, 0.0}};
-    wb_wire_run_end_row(&at, &row, false, NULL);
+    wb_wire_run_end_row(&at, &row, false);
     assert_int_equal(run.rows[0].iterations, 4);
 
     at.step = 1;
@@ -259,7 +259,7 @@ static void increments_are_counted_and_reported_as_fractions_of_the_step(void **
     assert_int_equal(run.increments, 3);
 
     row.fraction = 1.0;
-    wb_wire_run_end_row(&at, &row, false, NULL);
+    wb_wire_run_end_row(&at, &row, false);
     assert_int_equal(run.rows[1].step, 1);
     assert_int_equal(run.rows[1].increments, 2);
     assert_int_equal(run.rows[1].iterations, 5);
