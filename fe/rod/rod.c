@@ -31,13 +31,11 @@ struct wb_rod {
     struct wb_rod_shape shape;
     size_t row, history_size; /* doubles of one point, of all points */
     double load[3];
-    bool has_balance;
 
     /* Strains of the points, (n_points) each: `natural` of the reference, the others relative to
      * it. `earlier` is the state committed before `committed`. */
     struct wb_rod_strain *natural, *trial, *committed, *earlier;
     double *history, *trial_history;
-    double stored, dissipated;
 
     struct wb_rod_node *nodes;       /* (n_nodes) of the trial state */
     double (*committed_rotation)[4]; /* (n_nodes) */
@@ -144,7 +142,6 @@ enum wb_status wb_rod_create(struct wb_rod **out, const struct wb_rod_model *mod
     rod->length = model->length;
     rod->row = wb_rod_section_history_size(model->section);
     rod->history_size = rod->row * (size_t)rod->n_points;
-    rod->has_balance = model->has_balance;
     memcpy(rod->load, model->load, sizeof rod->load);
     wb_rod_shape_init(&rod->shape, model->length / model->n_elements);
     take_memory(rod);
@@ -186,7 +183,6 @@ void wb_rod_reset(struct wb_rod *rod)
     memset(rod->committed, 0, points * sizeof *rod->committed);
     memset(rod->earlier, 0, points * sizeof *rod->earlier);
     memset(rod->history, 0, rod->history_size * sizeof *rod->history);
-    rod->stored = rod->dissipated = 0.0;
     place(rod);
     remember_rotations(rod);
 }
@@ -391,31 +387,11 @@ void wb_rod_extrapolate(struct wb_rod *rod, double ratio)
     place(rod);
 }
 
-static void account(struct wb_rod *rod)
-{
-    rod->stored = 0.0;
-    for (int g = 0; g < rod->n_points; g++) {
-        const struct wb_rod_strain *at = &rod->trial[g];
-        const size_t row = (size_t)g * rod->row;
-        const double *shear = at->stretch + 1;
-        double strain[WB_ROD_SECTION_STRAINS], stored, dissipated;
-        section_strain(at, strain);
-        wb_rod_section_energy(rod->section, strain, rod->history + row, rod->trial_history + row,
-                              &stored, &dissipated);
-        stored +=
-            0.5 * rod->points[g].shear_stiffness * (shear[0] * shear[0] + shear[1] * shear[1]);
-        rod->stored += rod->shape.weight * stored;
-        rod->dissipated += rod->shape.weight * dissipated;
-    }
-}
-
 void wb_rod_commit(struct wb_rod *rod)
 {
     struct wb_rod_strain *oldest = rod->earlier;
     double *old = rod->history;
 
-    if (rod->has_balance)
-        account(rod);
     rod->earlier = rod->committed;
     rod->committed = oldest;
     copy_strains(rod, rod->committed, rod->trial);
@@ -480,10 +456,4 @@ void wb_rod_point_state(const struct wb_rod *rod, int g, double *s, double *stra
     *s = place_of(rod, g);
     section_strain(&rod->committed[g], strain);
     *history = rod->history + (size_t)g * rod->row;
-}
-
-void wb_rod_energy(const struct wb_rod *rod, double *stored, double *dissipated)
-{
-    *stored = rod->stored;
-    *dissipated = rod->dissipated;
 }

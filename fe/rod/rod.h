@@ -12,8 +12,6 @@
 #ifndef WB_FE_ROD_ROD_H
 #define WB_FE_ROD_ROD_H
 
-#include <stdbool.h>
-
 #include "base/status.h"
 #include "fe/rod/rod_element.h"
 #include "fe/rod/rod_section.h"
@@ -25,8 +23,7 @@ struct wb_rod_model {
     /* Stress-free curvature (twist, ky, kz), 1/m; NULL: straight. Called only during creation. */
     void (*natural_curvature)(void *context, double arc_length, double curvature[3]);
     void *curvature_context;
-    double load[3];   /* dead load per reference length, N/m */
-    bool has_balance; /* track energies, see wb_rod_energy() of fe/rod/rod_private.h */
+    double load[3]; /* dead load per reference length, N/m */
 };
 
 /* Result of an evaluation. Moments are divided by the rod's length to compare with forces. */

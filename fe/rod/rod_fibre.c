@@ -219,13 +219,3 @@ void wb_rod_fibre_respond(const struct wb_rod_fibre_law *law, const double strai
     response->shear = map.q * back.flow[1] + K / 3.0 * after->plastic_shear;
     tangent_of(law, &back, response);
 }
-
-double wb_rod_fibre_energy(const struct wb_rod_fibre_law *law, const double strain[2],
-                           const struct wb_rod_fibre_state *state)
-{
-    const double axial = strain[0] - state->plastic, shear = strain[1] - state->plastic_shear;
-    const double back =
-        state->plastic * state->plastic + state->plastic_shear * state->plastic_shear / 3.0;
-    return 0.5 * (law->material.youngs_modulus * axial * axial +
-                  law->shear_modulus * shear * shear + law->back * back);
-}

@@ -56,8 +56,4 @@ void wb_rod_fibre_respond(const struct wb_rod_fibre_law *law, const double strai
                           const struct wb_rod_fibre_state *before, struct wb_rod_fibre_state *after,
                           struct wb_rod_fibre_response *response);
 
-/* Elastic energy of a fibre per volume, J/m3, including the energy stored in the back stress. */
-double wb_rod_fibre_energy(const struct wb_rod_fibre_law *law, const double strain[2],
-                           const struct wb_rod_fibre_state *state);
-
 #endif

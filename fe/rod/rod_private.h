@@ -10,8 +10,4 @@ void wb_rod_set_clamp(struct wb_rod *rod, const double rotation[4]);
 /* Gauss point `g` (0 .. 2 n_elements - 1), from the clamp, in the state last evaluated. */
 const struct wb_rod_point *wb_rod_point(const struct wb_rod *rod, int g);
 
-/* Elastic energy of the committed state, and plastic work dissipated since the virgin state, J.
- * Both are 0 unless has_balance. */
-void wb_rod_energy(const struct wb_rod *rod, double *stored, double *dissipated);
-
 #endif

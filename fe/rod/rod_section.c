@@ -469,23 +469,6 @@ void wb_rod_section_respond(const struct wb_rod_section *section, const double *
     }
 }
 
-void wb_rod_section_energy(const struct wb_rod_section *section, const double *strain,
-                           const double *before, const double *after, double *stored,
-                           double *dissipated)
-{
-    double energy = 0.0, loss = 0.0;
-    for (int i = 0; i < section->n; i++) {
-        const int ring = i / section->n_around, part = ring / section->n_rings;
-        const double at[2] = {axial_strain(section, i, strain), section->radius[ring] * strain[1]};
-        const struct wb_rod_fibre_state was = fibre_state(section, i, before);
-        const struct wb_rod_fibre_state is = fibre_state(section, i, after);
-        energy += section->area[i] * wb_rod_fibre_energy(&section->laws[part], at, &is);
-        loss += section->area[i] * is.yield * (is.accumulated - was.accumulated);
-    }
-    *stored = energy;
-    *dissipated = loss;
-}
-
 void wb_rod_section_stress(const struct wb_rod_section *section, int i, const double *strain,
                            const double *history, double *axial, double *shear, double *plastic)
 {

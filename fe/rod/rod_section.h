@@ -76,13 +76,6 @@ void wb_rod_section_respond(const struct wb_rod_section *section, const double *
                             const double *restrict before, double *restrict after,
                             struct wb_rod_section_response *restrict response);
 
-/* Energies per length of rod for a step from `before` to `after`, J/m: elastic energy stored at its
- * end (including back stresses) and plastic work dissipated in it, q times the increment of
- * equivalent plastic strain. */
-void wb_rod_section_energy(const struct wb_rod_section *section, const double *strain,
-                           const double *before, const double *after, double *stored,
-                           double *dissipated);
-
 /* Stresses of fibre i and its equivalent plastic strain, at the strains that belong to
  * `history`. */
 void wb_rod_section_stress(const struct wb_rod_section *section, int i, const double *strain,

@@ -36,7 +36,6 @@ static inline struct test_rod test_rod_make(const struct test_rod_plan *plan)
         .natural_curvature = plan->natural_curvature,
         .curvature_context = plan->curvature_context,
         .load = {plan->load[0], plan->load[1], plan->load[2]},
-        .has_balance = true,
     };
     assert_int_equal(wb_rod_create(&t.rod, &model), WB_OK);
 

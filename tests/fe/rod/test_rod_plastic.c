@@ -5,6 +5,7 @@
 #include "base/json.h"
 #include "fe/rod/rod_element_private.h"
 #include "fe/rod/rod_private.h"
+#include "tests/fe/rod/rod_energy.h"
 #include "tests/fe/rod/rods.h"
 
 static const struct wb_material copper = {
@@ -128,8 +129,7 @@ static struct test_rod make_8awg(int n_rings, int n_around)
     const struct wb_rod_section_part parts[2] = {{0.0, 3.26e-3, copper}, {3.26e-3, 4.86e-3, pvc}};
     const struct wb_rod_section_layout layout = {n_rings, n_around};
     assert_int_equal(wb_rod_section_create(&t.section, 2, parts, &layout), WB_OK);
-    const struct wb_rod_model model = {
-        .section = t.section, .length = 0.1, .n_elements = 50, .has_balance = true};
+    const struct wb_rod_model model = {.section = t.section, .length = 0.1, .n_elements = 50};
     assert_int_equal(wb_rod_create(&t.rod, &model), WB_OK);
     const struct wb_rod_solver_model solver = {.rod = t.rod, .length = 0.1};
     assert_int_equal(wb_rod_solver_create(&t.solver, &solver), WB_OK);
@@ -214,6 +214,7 @@ struct account {
     struct wb_rod_loads loads;
     struct wb_rod_node tip;
     double work;
+    struct test_rod_energy energy;
 };
 
 static bool add_work(void *context, double fraction, int iterations)
@@ -238,6 +239,7 @@ static bool add_work(void *context, double fraction, int iterations)
     }
     a->loads = loads;
     a->tip = tip;
+    test_rod_energy_add(&a->energy);
     return true;
 }
 
@@ -255,9 +257,14 @@ static void work_is_stored_or_dissipated(void **unused)
     for (int fine = 0; fine < 2; fine++) {
         const int parts = fine ? 40 : 20;
         struct test_rod t = make_8awg(6, 16);
-        struct account account = {.t = &t, .tip = *wb_rod_tip(t.rod)};
+        const struct wb_material materials[] = {copper, pvc};
+        struct account account = {
+            .t = &t,
+            .tip = *wb_rod_tip(t.rod),
+            .energy = test_rod_energy_make(t.rod, t.section, materials, 0.1, 50),
+        };
         struct wb_tip_loads from = {0};
-        double stored, dissipated, aside = 0.0;
+        double aside = 0.0;
         for (size_t i = 0; i < sizeof path / sizeof path[0]; i++) {
             for (int k = 1; k <= parts; k++) {
                 struct wb_rod_move move = {.observer = add_work, .context = &account};
@@ -276,7 +283,8 @@ static void work_is_stored_or_dissipated(void **unused)
             }
             from = path[i];
         }
-        wb_rod_energy(t.rod, &stored, &dissipated);
+        const double stored = account.energy.stored, dissipated = account.energy.dissipated;
+        free(account.energy.history);
         error[fine] = (stored + dissipated - account.work) / account.work;
         print_message("work %.6f J, stored %.6f, dissipated %.6f: missing %.2g\n", account.work,
                       stored, dissipated, error[fine]);
@@ -301,8 +309,11 @@ static void elastic_work_is_stored(void **unused)
         const int parts = fine ? 80 : 40;
         struct test_rod t = test_rod_make(&(struct test_rod_plan){
             .diameter = 2e-3, .length = 6e-3, .material = m, .n_elements = 20});
-        struct account account = {.t = &t, .tip = *wb_rod_tip(t.rod)};
-        double stored, dissipated;
+        struct account account = {
+            .t = &t,
+            .tip = *wb_rod_tip(t.rod),
+            .energy = test_rod_energy_make(t.rod, t.section, &m, 6e-3, 20),
+        };
         for (int k = 1; k <= parts; k++) {
             const double share = (double)k / parts;
             struct wb_rod_result result;
@@ -315,7 +326,8 @@ static void elastic_work_is_stored(void **unused)
             assert_int_equal(wb_rod_solver_move(t.solver, &move, &result), WB_OK);
             assert_int_equal(result.end, WB_ROD_CONVERGED);
         }
-        wb_rod_energy(t.rod, &stored, &dissipated);
+        const double stored = account.energy.stored, dissipated = account.energy.dissipated;
+        free(account.energy.history);
         error[fine] = fabs(stored / account.work - 1.0);
         print_message("elastic: work %.6f J, stored %.6f: missing %.2g\n", account.work, stored,
                       error[fine]);
