@@ -11,6 +11,10 @@ struct wb_tip_loads {
     double follower[3]; /* N, in the frame of the tip's section: along the wire, its y, its z */
 };
 
+/* Loads between two: exactly `from` at fraction 0 and `to` at 1. */
+struct wb_tip_loads wb_trial_loads_between(const struct wb_tip_loads *from,
+                                           const struct wb_tip_loads *to, double fraction);
+
 /* Phase of a row of a test. */
 enum wb_phase {
     WB_PHASE_LOAD,

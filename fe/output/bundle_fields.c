@@ -27,13 +27,6 @@ static const struct wb_swept_section *section_of(const struct wb_bundle_bodies *
     return &bodies->type[bodies->model->type_of[wire]].section;
 }
 
-static int tape_quads(const struct wb_bundle_bodies *bodies)
-{
-    return bodies->has_tape
-               ? wb_swept_tape_elements(bodies->tape) * (bodies->ring.layout.n_stations - 1)
-               : 0;
-}
-
 static void count(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bodies)
 {
     f->n_bodies = bodies->n_wires + (bodies->has_tape ? 1 : 0);
@@ -42,9 +35,11 @@ static void count(struct wb_bundle_fields *f, const struct wb_bundle_bodies *bod
         f->n_points += layout->n_nodes * layout->n_stations;
         f->n_hexahedra += section_of(bodies, w)->n_quads * (layout->n_stations - 1);
     }
-    if (bodies->has_tape)
-        f->n_points += bodies->ring.layout.n_nodes * bodies->ring.layout.n_stations;
-    f->n_quads = tape_quads(bodies);
+    if (bodies->has_tape) {
+        const struct wb_swept_layout *ring = &bodies->ring.layout;
+        f->n_points += ring->n_nodes * ring->n_stations;
+        f->n_quads = wb_swept_tape_elements(bodies->tape) * (ring->n_stations - 1);
+    }
 }
 
 static void allocate(struct wb_bundle_fields *f)
@@ -68,8 +63,7 @@ static void set_outline(struct wb_bundle_fields *f, struct wb_bundle_fields_body
     body->n_outline = section->n_outline;
     body->outline =
         wb_memory_take(&f->memory, (size_t)section->n_outline + 1, sizeof *body->outline);
-    for (int i = 0; i < section->n_outline; i++)
-        body->outline[i] = section->outline[i];
+    memcpy(body->outline, section->outline, (size_t)section->n_outline * sizeof *body->outline);
 }
 
 /* Positions of a field at the body's points. */

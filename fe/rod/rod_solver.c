@@ -457,19 +457,6 @@ static double choose_increment(const struct wb_rod_solver *s, const struct wb_ro
     return (1.0 - done) / fmax(1.0, ceil(turn / (0.8 * s->model.most_rotation)));
 }
 
-static void loads_between(const struct wb_rod_loads *from, const struct wb_rod_loads *to,
-                          double fraction, struct wb_rod_loads *loads)
-{
-    loads->weight = wb_interpolate(from->weight, to->weight, fraction);
-    loads->tension = wb_interpolate(from->tension, to->tension, fraction);
-    for (int i = 0; i < 3; i++) {
-        loads->tip.force[i] = wb_interpolate(from->tip.force[i], to->tip.force[i], fraction);
-        loads->tip.moment[i] = wb_interpolate(from->tip.moment[i], to->tip.moment[i], fraction);
-        loads->tip.follower[i] =
-            wb_interpolate(from->tip.follower[i], to->tip.follower[i], fraction);
-    }
-}
-
 static bool are_finite(const struct wb_rod_move *move)
 {
     const struct wb_rod_loads *t = &move->target;
@@ -528,9 +515,13 @@ enum wb_status wb_rod_solver_move(struct wb_rod_solver *s, const struct wb_rod_m
         fraction = fmin(fraction, choose_increment(s, move, result->fraction));
         const double next =
             result->fraction + fraction > 1.0 - 1e-9 ? 1.0 : result->fraction + fraction;
-        struct step step = {.control = move->control,
-                            .deflection = wb_interpolate(start, move->deflection, next)};
-        loads_between(&from, &move->target, next, &step.loads);
+        struct step step = {
+            .control = move->control,
+            .loads = {.weight = wb_interpolate(from.weight, move->target.weight, next),
+                      .tip = wb_trial_loads_between(&from.tip, &move->target.tip, next),
+                      .tension = wb_interpolate(from.tension, move->target.tension, next)},
+            .deflection = wb_interpolate(start, move->deflection, next),
+        };
         s->iterations = 0;
         const bool stable = solve_with_strand(s, &step) && is_stable(s, &step);
         result->iterations += s->iterations;

@@ -180,13 +180,10 @@ bool wb_hex20_kernel_multiply_by(enum wb_hex20_kernel_variant variant,
             return false;
         multiply_avx512(kernel, stiffness);
         return true;
-#else
-    case WB_HEX20_KERNEL_AVX2:
-    case WB_HEX20_KERNEL_AVX512:
-        break;
 #endif
+    default:
+        return false;
     }
-    return false;
 }
 
 void wb_hex20_kernel_multiply(const struct wb_hex20_kernel *kernel, double *restrict stiffness)

@@ -100,14 +100,11 @@ void wb_wire_run_add(struct wb_wire_run *run, const struct wb_wire_model *model,
 struct wb_wire_target wb_wire_run_target(const struct wb_wire_step *step,
                                          const struct wb_wire_target *start, double share)
 {
-    const struct wb_tip_loads *from = &start->tip, *to = &step->loads;
-    struct wb_wire_target target = {.tension = start->tension};
+    struct wb_wire_target target = {
+        .tip = wb_trial_loads_between(&start->tip, &step->loads, share),
+        .tension = start->tension,
+    };
 
-    for (int i = 0; i < 3; i++) {
-        target.tip.force[i] = wb_interpolate(from->force[i], to->force[i], share);
-        target.tip.moment[i] = wb_interpolate(from->moment[i], to->moment[i], share);
-        target.tip.follower[i] = wb_interpolate(from->follower[i], to->follower[i], share);
-    }
     if (step->kind == WB_WIRE_STEP_RELEASE)
         target.tension = wb_interpolate(start->tension, 0.0, share);
     target.is_held = step->kind == WB_WIRE_STEP_DEFLECTION;
