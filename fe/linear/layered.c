@@ -43,11 +43,10 @@ struct wb_layered {
     struct block *blocks; /* (n_blocks) */
     int *block_of;        /* (n_unknowns) */
     lapack_int *pivots;   /* (n_unknowns) */
-    double *entries;      /* of all blocks */
+    size_t n_entries;     /* of all blocks */
     double *work;         /* (n_most x n_most): copy of a block, or a block column */
     double *bunch;        /* (n_bunch), of dsytrf */
     lapack_int n_bunch;
-    size_t n_entries;
     struct wb_memory memory; /* of all arrays */
 };
 
@@ -66,9 +65,15 @@ static bool layout_is_possible(int n_blocks, const int *first, const int *link)
     return true;
 }
 
-static size_t lay_out(struct wb_layered *layered, const int *first, const int *link)
+static double *take_entries(struct wb_layered *layered, int rows, int columns)
 {
-    size_t n_entries = 0;
+    const size_t n = (size_t)rows * (size_t)columns;
+    layered->n_entries += n;
+    return wb_memory_take(&layered->memory, n, sizeof(double));
+}
+
+static void lay_out(struct wb_layered *layered, const int *first, const int *link)
+{
     for (int b = 0; b < layered->n_blocks; b++) {
         struct block *block = &layered->blocks[b];
         const bool last = b + 1 == layered->n_blocks;
@@ -80,29 +85,12 @@ static size_t lay_out(struct wb_layered *layered, const int *first, const int *l
         block->pivot = layered->pivots + block->first;
         if (block->n > layered->n_most)
             layered->n_most = block->n;
-        n_entries += (size_t)block->n * (size_t)block->n;
-        n_entries += (size_t)block->next * (size_t)block->linked;
+        block->diagonal = take_entries(layered, block->n, block->n);
+        block->below = take_entries(layered, block->next, block->linked);
         if (!layered->symmetric)
-            n_entries += (size_t)block->n * (size_t)block->next;
+            block->right = take_entries(layered, block->n, block->next);
         for (int i = block->first; i < first[b + 1]; i++)
             layered->block_of[i] = b;
-    }
-    return n_entries;
-}
-
-static void hand_out(struct wb_layered *layered)
-{
-    double *free_entry = layered->entries;
-    for (int b = 0; b < layered->n_blocks; b++) {
-        struct block *block = &layered->blocks[b];
-        block->diagonal = free_entry;
-        free_entry += (size_t)block->n * (size_t)block->n;
-        block->below = free_entry;
-        free_entry += (size_t)block->next * (size_t)block->linked;
-        if (!layered->symmetric) {
-            block->right = free_entry;
-            free_entry += (size_t)block->n * (size_t)block->next;
-        }
     }
 }
 
@@ -128,19 +116,16 @@ enum wb_status wb_layered_create(struct wb_layered **out, int n_blocks, const in
     layered->block_of = wb_memory_take(&layered->memory, n, sizeof *layered->block_of);
     layered->pivots = wb_memory_take(&layered->memory, n, sizeof *layered->pivots);
 
-    layered->n_entries = lay_out(layered, first, link);
+    lay_out(layered, first, link);
     double wanted = 1.0;
     if (symmetric && LAPACKE_dsytrf_work(LAPACK_COL_MAJOR, 'L', layered->n_most, NULL,
                                          layered->n_most, NULL, &wanted, -1) != 0)
         wanted = layered->n_most;
     layered->n_bunch = (lapack_int)wanted;
-    layered->entries =
-        wb_memory_take(&layered->memory, layered->n_entries, sizeof *layered->entries);
     layered->work = wb_memory_take(
         &layered->memory, (size_t)layered->n_most * (size_t)layered->n_most, sizeof(double));
     layered->bunch =
         wb_memory_take(&layered->memory, (size_t)layered->n_bunch, sizeof *layered->bunch);
-    hand_out(layered);
     *out = layered;
     return WB_OK;
 }
