@@ -261,7 +261,7 @@ static void add_elastic(const struct stiffness *own, const double *strain,
     }
 }
 
-/* Pointers to the history rows of one part, each as long as the part has fibres. */
+/* The history of one ring in the rows of its part, each as long as the part has fibres. */
 struct rows {
     double *plastic, *plastic_shear, *accumulated, *yield;
 };
@@ -271,10 +271,11 @@ static int fibres_of_part(const struct wb_rod_section *section)
     return section->n_rings * section->n_around;
 }
 
-static struct rows rows_of(const struct wb_rod_section *section, int part, double *history)
+static struct rows rows_of(const struct wb_rod_section *section, int ring, double *history)
 {
-    const size_t n = (size_t)fibres_of_part(section);
-    double *first = history + HISTORY_HEAD + (size_t)part * HISTORY_ROWS * n;
+    const int n = fibres_of_part(section), part = ring / section->n_rings;
+    double *first = history + HISTORY_HEAD + part * HISTORY_ROWS * n +
+                    ring % section->n_rings * section->n_around;
     return (struct rows){first, first + n, first + 2 * n, first + 3 * n};
 }
 
@@ -329,7 +330,7 @@ struct ring {
     double axial[MAX_AROUND], shear[MAX_AROUND], beyond[MAX_AROUND];
 };
 
-/* Trial stresses of one ring; `rows` point to the ring. Elastic fibres spend most of their time
+/* Trial stresses of one ring. Elastic fibres spend most of their time
  * here, so the loop has no branches. */
 static void compute_trial_stresses(const struct wb_rod_section *section,
                                    const struct wb_rod_fibre_law *law, const double *strain,
@@ -441,18 +442,15 @@ static void respond_part(const struct wb_rod_section *section, int part, const d
     for (int i = 0; i < N_STRAINS; i++)
         response->tangent[i][i] += elastic[i];
 
-    struct rows rows = rows_of(section, part, after);
     for (int r = part * section->n_rings; r < (part + 1) * section->n_rings; r++) {
-        const int n = section->n_around;
+        const struct rows rows = rows_of(section, r, after);
         struct ring ring;
-        ring.first = r * n;
+        ring.first = r * section->n_around;
         ring.radius = section->radius[r];
         ring.area = section->area[ring.first];
         compute_trial_stresses(section, law, strain, &rows, &ring);
         return_ring(section, part, strain, &rows, &ring, response);
         add_forces(section, &ring, response);
-        rows = (struct rows){rows.plastic + n, rows.plastic_shear + n, rows.accumulated + n,
-                             rows.yield + n};
     }
 }
 
