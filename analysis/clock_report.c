@@ -220,15 +220,12 @@ static void append_area(const struct wb_clock_report *report, struct wb_text *te
                        report->area_interval[0] / WB_MJ, report->area_interval[1] / WB_MJ);
 }
 
-enum wb_status wb_clock_report_format(const struct wb_clock_report *report, struct wb_text *text)
+void wb_clock_report_format(const struct wb_clock_report *report, struct wb_text *text)
 {
     append_cameras(report, text);
     append_load(report, text);
     append_lag(report, text);
     append_area(report, text);
-    if (text->failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the clock report");
-    return WB_OK;
 }
 
 static void copy(const struct wb_clock_report *report, const char *key, struct wb_json *object)

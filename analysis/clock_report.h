@@ -43,8 +43,7 @@ WB_MUST_CHECK enum wb_status wb_clock_report_make(struct wb_clock_report *report
 void wb_clock_report_release(struct wb_clock_report *report); /* accepts a zeroed one */
 
 /* The report as text, and as members of a JSON object with units in the keys. */
-WB_MUST_CHECK enum wb_status wb_clock_report_format(const struct wb_clock_report *report,
-                                                    struct wb_text *text);
+void wb_clock_report_format(const struct wb_clock_report *report, struct wb_text *text);
 void wb_clock_report_describe(const struct wb_clock_report *report, struct wb_json *object);
 
 #endif

@@ -145,7 +145,7 @@ static void append_warnings(const struct wb_json *document, struct wb_text *text
     }
 }
 
-enum wb_status wb_quicklook_summary(const struct wb_dataset *dataset, struct wb_text *text)
+void wb_quicklook_summary(const struct wb_dataset *dataset, struct wb_text *text)
 {
     const struct wb_test_info *const info = &dataset->info;
     const struct wb_json *const document = dataset->document;
@@ -166,9 +166,6 @@ enum wb_status wb_quicklook_summary(const struct wb_dataset *dataset, struct wb_
         wb_text_append(text, "bow                 %.2f +- %.2f mm\n", bow, bow_uncertainty);
     append_corrections(document, text);
     append_warnings(document, text);
-    if (text->failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for a summary");
-    return WB_OK;
 }
 
 void wb_quicklook_describe(const struct wb_dataset *dataset, struct wb_json *object)
@@ -406,9 +403,8 @@ static enum wb_status write_summary(const struct wb_dataset *dataset, const char
     struct wb_text text = {0};
     char path[WB_PATH];
     WB_TRY(wb_file_join(path, folder, "summary.txt"));
-    enum wb_status status = wb_quicklook_summary(dataset, &text);
-    if (status == WB_OK)
-        status = wb_file_write(path, wb_text_string(&text), text.length);
+    wb_quicklook_summary(dataset, &text);
+    const enum wb_status status = wb_file_write_text(path, &text);
     wb_text_release(&text);
     return status;
 }

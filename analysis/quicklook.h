@@ -9,8 +9,7 @@
 #include "base/text.h"
 
 /* Appends the summary: what was tested, how far, stiffness, corrections and warnings. */
-WB_MUST_CHECK enum wb_status wb_quicklook_summary(const struct wb_dataset *dataset,
-                                                  struct wb_text *text);
+void wb_quicklook_summary(const struct wb_dataset *dataset, struct wb_text *text);
 
 /* Sets the same in an object, with units in the keys. */
 void wb_quicklook_describe(const struct wb_dataset *dataset, struct wb_json *object);

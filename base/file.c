@@ -137,8 +137,6 @@ enum wb_status wb_file_write(const char *path, const void *bytes, size_t size)
 
 enum wb_status wb_file_write_text(const char *path, const struct wb_text *text)
 {
-    if (text->failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for '%s'", path);
     return wb_file_write(path, wb_text_string(text), text->length);
 }
 

@@ -23,7 +23,7 @@ WB_MUST_CHECK enum wb_status wb_file_read_with_reason(const char *path, char **b
  * readers see either the old or the new file and no partial file remains. */
 WB_MUST_CHECK enum wb_status wb_file_write(const char *path, const void *bytes, size_t size);
 
-/* As wb_file_write() for a text; WB_ERR_MEMORY if building the text failed. */
+/* As wb_file_write() for a text. */
 WB_MUST_CHECK enum wb_status wb_file_write_text(const char *path, const struct wb_text *text);
 
 /* True if a file or folder exists; true if it is a folder. Links are followed. */

@@ -6,28 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool reserve(struct wb_text *text, size_t more)
+#include "base/memory.h"
+
+/* Makes room for `more` bytes and a NUL; a size that no memory has fails like an allocation. */
+static void reserve(struct wb_text *text, size_t more)
 {
-    if (text->failed)
-        return false;
-    if (more > SIZE_MAX / 2 - text->length - 1) {
-        text->failed = true;
-        return false;
-    }
-    const size_t needed = text->length + more + 1;
-    if (needed <= text->capacity)
-        return true;
-    size_t capacity = text->capacity ? text->capacity : 256;
-    while (capacity < needed)
-        capacity *= 2;
-    char *bytes = realloc(text->bytes, capacity);
-    if (!bytes) {
-        text->failed = true;
-        return false;
-    }
-    text->bytes = bytes;
-    text->capacity = capacity;
-    return true;
+    const size_t needed = more < SIZE_MAX / 2 ? text->length + more + 1 : SIZE_MAX;
+    text->bytes = wb_memory_room(text->bytes, &text->capacity, needed, 1);
 }
 
 void wb_text_append(struct wb_text *text, const char *format, ...)
@@ -37,19 +22,15 @@ void wb_text_append(struct wb_text *text, const char *format, ...)
     va_copy(again, arguments);
     const int length = vsnprintf(NULL, 0, format, arguments);
     va_end(arguments);
-    if (length < 0)
-        text->failed = true;
-    else if (reserve(text, (size_t)length)) {
-        vsnprintf(text->bytes + text->length, (size_t)length + 1, format, again);
-        text->length += (size_t)length;
-    }
+    reserve(text, (size_t)length);
+    vsnprintf(text->bytes + text->length, (size_t)length + 1, format, again);
+    text->length += (size_t)length;
     va_end(again);
 }
 
 void wb_text_append_bytes(struct wb_text *text, const void *bytes, size_t n)
 {
-    if (!reserve(text, n))
-        return;
+    reserve(text, n);
     if (n > 0)
         memcpy(text->bytes + text->length, bytes, n);
     text->length += n;

@@ -2,15 +2,12 @@
 #ifndef WB_BASE_TEXT_H
 #define WB_BASE_TEXT_H
 
-#include <stdbool.h>
 #include <stddef.h>
 
-/* All zero is an empty text. Running out of memory sets `failed`; later appends do nothing, so one
- * check at the end is enough. */
+/* All zero is an empty text. Appending ends as base/memory.h describes if memory runs out. */
 struct wb_text {
     char *bytes; /* NUL-terminated once something was appended; owned */
     size_t length, capacity;
-    bool failed;
 };
 
 /* Appends formatted text, or raw bytes. */

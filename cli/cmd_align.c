@@ -148,20 +148,19 @@ static void print_finding(const struct options *o, const struct result *results,
     wb_finding_print(&finding);
 }
 
-static enum wb_status deliver(const struct options *o, const struct result *results, size_t n)
+static void deliver(const struct options *o, const struct result *results, size_t n)
 {
     if (o->common.json) {
         print_json(results, n);
-        return WB_OK;
+        return;
     }
     for (size_t i = 0; i < n; i++) {
         if (i > 0)
             putchar('\n');
-        WB_TRY(wb_datasets_print(&results[i].dataset, results[i].folder));
+        wb_datasets_print(&results[i].dataset, results[i].folder);
     }
     if (n > 0)
         print_finding(o, results, n);
-    return WB_OK;
 }
 
 int wb_cmd_align(int argc, char **argv)
@@ -178,7 +177,7 @@ int wb_cmd_align(int argc, char **argv)
     struct result *const results = wb_memory_new(n, sizeof *results);
     int code = wb_command_exit(run(&options, results, &n_done));
     if (code == WB_EXIT_OK)
-        code = wb_command_exit(deliver(&options, results, n_done));
+        deliver(&options, results, n_done);
     for (size_t i = 0; i < n_done; i++) {
         if (code == WB_EXIT_OK && !wb_dataset_is_complete(&results[i].dataset))
             code = WB_EXIT_INCOMPLETE;

@@ -35,12 +35,11 @@ static int print(const struct wb_clock_report *report, const struct wb_command_c
         wb_command_print_json(root);
         return WB_EXIT_OK;
     }
-    const enum wb_status status = wb_clock_report_format(report, &text);
-    if (status == WB_OK)
-        printf("%s%s\n%s", options->input, report->dataset.info.is_virtual ? " (virtual rig)" : "",
-               wb_text_string(&text));
+    wb_clock_report_format(report, &text);
+    printf("%s%s\n%s", options->input, report->dataset.info.is_virtual ? " (virtual rig)" : "",
+           wb_text_string(&text));
     wb_text_release(&text);
-    return wb_command_exit(status);
+    return WB_EXIT_OK;
 }
 
 int wb_cmd_clock(int argc, char **argv)

@@ -32,8 +32,8 @@ static int deliver(const struct wb_dataset *dataset, const struct wb_command_com
         struct wb_json *const root = wb_json_create();
         wb_datasets_describe(root, dataset, options->output);
         wb_command_print_json(root);
-    } else if (wb_datasets_print(dataset, options->output) != WB_OK) {
-        return WB_EXIT_FAILED;
+    } else {
+        wb_datasets_print(dataset, options->output);
     }
     return wb_dataset_is_complete(dataset) ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

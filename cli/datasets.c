@@ -96,14 +96,12 @@ void wb_datasets_release(struct wb_datasets *datasets)
     memset(datasets, 0, sizeof *datasets);
 }
 
-enum wb_status wb_datasets_print(const struct wb_dataset *dataset, const char *folder)
+void wb_datasets_print(const struct wb_dataset *dataset, const char *folder)
 {
     struct wb_text text = {0};
-    const enum wb_status status = wb_quicklook_summary(dataset, &text);
-    if (status == WB_OK)
-        printf("%s\nwritten to %s\n", wb_text_string(&text), folder);
+    wb_quicklook_summary(dataset, &text);
+    printf("%s\nwritten to %s\n", wb_text_string(&text), folder);
     wb_text_release(&text);
-    return status;
 }
 
 void wb_datasets_describe(struct wb_json *object, const struct wb_dataset *dataset,

@@ -20,8 +20,7 @@ WB_MUST_CHECK enum wb_status wb_datasets_read(struct wb_datasets *datasets,
 void wb_datasets_release(struct wb_datasets *datasets); /* accepts a zeroed one */
 
 /* Prints a dataset's summary and its folder; the same as members of an object. */
-WB_MUST_CHECK enum wb_status wb_datasets_print(const struct wb_dataset *dataset,
-                                               const char *folder);
+void wb_datasets_print(const struct wb_dataset *dataset, const char *folder);
 void wb_datasets_describe(struct wb_json *object, const struct wb_dataset *dataset,
                           const char *folder);
 

@@ -45,17 +45,16 @@ static enum wb_status print_dataset(const char *path, struct wb_json *root, stru
     struct wb_dataset dataset;
     struct wb_text text = {0};
     WB_TRY(wb_dataset_read_kinds(&dataset, path, tests, NULL));
-    enum wb_status status = WB_OK;
-    if (root)
+    if (root) {
         wb_quicklook_describe(&dataset, root);
-    else
-        status = wb_quicklook_summary(&dataset, &text);
-    if (status == WB_OK && !root)
+    } else {
+        wb_quicklook_summary(&dataset, &text);
         printf("%s\n", wb_text_string(&text));
+    }
     append_next_of(next, &dataset.info, path);
     wb_text_release(&text);
     wb_dataset_release(&dataset);
-    return status;
+    return WB_OK;
 }
 
 /* Whether it is a YAML file that cannot be parsed, which is reported. */

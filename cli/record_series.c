@@ -329,7 +329,7 @@ static bool ask_questions(struct run *run, int sample, struct wb_text *specimen,
         if (wb_series_specimen(&run->series, sample, given, specimen, &why) == WB_OK)
             return true;
         wb_warn("%s", why.text);
-        if (specimen->failed || !(run->series.asks[0] || run->series.asks[1]))
+        if (!(run->series.asks[0] || run->series.asks[1]))
             return false;
         wb_text_release(specimen);
     }

@@ -14,8 +14,6 @@
 #define UPDATE_NS (50 * WB_NS_PER_MS)
 /* Time for views to end by themselves. */
 #define PATIENCE_MS 1000
-/* Bytes of messages that are deferred while a view has the terminal. */
-#define MOST_DEFERRED 65536
 
 /* --- messages --- */
 
@@ -25,10 +23,13 @@ static void feed_and_defer(void *context, enum wb_log_level level, const char *d
 {
     struct wb_record_views *const views = context;
     wb_live_feed_add_message(&views->feed, level, message);
-    if (views->deferred.length >= MOST_DEFERRED)
-        views->n_lost++;
+    char *const end = views->deferred + views->n_deferred;
+    const size_t room = sizeof views->deferred - views->n_deferred;
+    const int n = snprintf(end, room, "wirebench: %s%s\n", wb_live_line_level(level), message);
+    if (views->n_lost == 0 && (size_t)n < room)
+        views->n_deferred += (size_t)n;
     else
-        wb_text_append(&views->deferred, "wirebench: %s%s\n", wb_live_line_level(level), message);
+        views->n_lost++;
     (void)domain;
 }
 
@@ -136,10 +137,10 @@ static void take_terminal_back(struct wb_record_views *views)
     open_line(views); /* first, because from here on nothing waits for the terminal */
     if (!is_sane)
         wb_live_line_restore(&views->modes, WB_LIVE_TERMINAL_RESTORE);
-    wb_live_line_say(wb_text_string(&views->deferred));
+    views->deferred[views->n_deferred] = '\0';
+    wb_live_line_say(views->deferred);
     if (views->n_lost > 0)
         wb_warn("%d more messages were dropped while the view was shown", views->n_lost);
-    wb_text_release(&views->deferred);
 }
 
 bool wb_record_views_update(struct wb_record_views *views, bool now)

@@ -15,13 +15,16 @@
 #include <stdint.h>
 #include <termios.h>
 
-#include "base/text.h"
 #include "daq/test/bend_test.h"
 #include "fe/model/wire.h"
 #include "live/live_feed.h"
 #include "live/live_page.h"
 #include "live/live_plan.h"
 #include "live/live_source.h"
+
+enum {
+    WB_RECORD_VIEWS_DEFERRED = 65536
+};
 
 struct wb_record_views_options {
     bool live;        /* the view on the terminal */
@@ -37,11 +40,14 @@ struct wb_record_views {
     struct wb_live_plan plan;
     struct wb_live_page page;
     char title[512];
-    char address[96];        /* message with the address of the page; "" without one */
-    int terminal;            /* index of the view on the terminal; -1: none, or it has ended */
-    struct termios modes;    /* of the terminal before that view */
-    struct wb_text deferred; /* messages of the log while that view has the terminal */
-    int n_lost;              /* number of messages beyond those */
+    char address[96];     /* message with the address of the page; "" without one */
+    int terminal;         /* index of the view on the terminal; -1: none, or it has ended */
+    struct termios modes; /* of the terminal before that view */
+    /* Messages of the log while that view has the terminal. Their size is fixed: the recorder does
+     * not end where memory is insufficient. */
+    char deferred[WB_RECORD_VIEWS_DEFERRED];
+    size_t n_deferred; /* bytes without the NUL */
+    int n_lost;        /* messages from the first that did not fit */
     int64_t sent_ns;
 };
 

@@ -170,8 +170,6 @@ static enum wb_status calibrate(struct job *job, struct wirebench_properties *pr
     const enum wb_status status = run[job->method](job, text);
     wb_call_end_gsl();
     WB_TRY(status);
-    if (text->failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory for the properties");
     return wb_card_source_parse(&properties->source, wb_text_string(text),
                                 "the calibrated properties", NULL);
 }

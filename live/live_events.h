@@ -21,7 +21,7 @@ struct wb_live_events_cursor {
 };
 
 /* Appends all events that are new to the client. `is_over`: the recorder has ended, which is the
- * last event. If memory is insufficient, `text->failed` is set. */
+ * last event. */
 void wb_live_events_append(struct wb_live_events_cursor *cursor, const struct wb_live_plan *plan,
                            const struct wb_live_history *history, bool is_over,
                            struct wb_text *text);

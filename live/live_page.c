@@ -87,8 +87,6 @@ static ssize_t read_events(void *context, uint64_t position, char *buffer, size_
             return MHD_CONTENT_READER_END_OF_STREAM;
         wb_live_events_append(&client->cursor, server->plan, &server->history, server->is_over,
                               &client->text);
-        if (client->text.failed)
-            return MHD_CONTENT_READER_END_WITH_ERROR;
     }
     if (client->sent == client->text.length) {
         client->is_waiting = true;

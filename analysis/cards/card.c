@@ -69,8 +69,5 @@ enum wb_status wb_card_write(const struct wb_card_kind *kind, const struct wb_ca
                              struct wb_reason *why)
 {
     WB_TRY(wb_setting_check(&wb_card_table, settings, why));
-    WB_TRY(kind->write(source, settings, text, why));
-    return text->failed
-               ? wb_fail_to(why, WB_ERR_MEMORY, "out of memory for the card %s", kind->name)
-               : WB_OK;
+    return kind->write(source, settings, text, why);
 }

@@ -43,8 +43,8 @@ extern const char *const wb_card_places[];          /* names of the places by bi
 /* The kind of a name; NULL for an unknown name, with a message that lists the names. */
 const struct wb_card_kind *wb_card_find(const char *name);
 
-/* Appends the card of a kind; WB_ERR_ARGUMENT for settings out of range, WB_ERR_UNSUPPORTED,
- * WB_ERR_MEMORY. `why` receives the reason; NULL: it is logged. */
+/* Appends the card of a kind; WB_ERR_ARGUMENT for settings out of range, WB_ERR_UNSUPPORTED.
+ * `why` receives the reason; NULL: it is logged. */
 WB_MUST_CHECK enum wb_status wb_card_write(const struct wb_card_kind *kind,
                                            const struct wb_card_source *source,
                                            const struct wb_card_settings *settings,

@@ -77,10 +77,8 @@ static void append_words(struct wb_text *text, const char *const *words)
 static enum wb_status write_file(const char *folder, const char *name, const struct wb_text *text)
 {
     char path[WB_PATH];
-    if (text->failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory");
     WB_TRY(wb_file_join(path, folder, name));
-    return wb_file_write(path, wb_text_string(text), text->length);
+    return wb_file_write_text(path, text);
 }
 
 /* Writes one line per item, in their order. */

@@ -52,7 +52,7 @@ static int open_log(const struct wb_jobs_plan_item *item, const char *partial)
     wb_text_append_quoted(&line, partial);
     wb_text_append(&line, "\n");
     const ssize_t written = write(log, wb_text_string(&line), line.length);
-    const bool whole = !line.failed && written == (ssize_t)line.length;
+    const bool whole = written == (ssize_t)line.length;
     wb_text_release(&line);
     if (whole)
         return log;

@@ -110,9 +110,7 @@ static enum wb_status look_at(struct wb_jobs_plan *plan, const struct wb_jobs_pl
     if (status != WB_OK)
         return look->lost ? WB_OK : status;
     const char *const said = wb_text_string(&answer.err);
-    if (answer.out.failed)
-        set_lost(look, "out of memory");
-    else if (answer.code != 0 && !strstr(said, "Invalid job id"))
+    if (answer.code != 0 && !strstr(said, "Invalid job id"))
         set_lost(look, said);
     char *rest = answer.out.bytes, *line;
     while (!look->lost && (line = strsep(&rest, "\n")))

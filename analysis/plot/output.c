@@ -55,7 +55,7 @@ static size_t number_of_id(struct id_list *ids, const char *start, size_t length
 
 /* Cairo's ids (glyph0-1, surface12) repeat from figure to figure and count over the whole process.
  * Numbered anew behind the figure's name they are unique in a page and the same in every run. */
-static enum wb_status rename_ids(const struct wb_text *raw, const char *name, struct wb_text *svg)
+static void rename_ids(const struct wb_text *raw, const char *name, struct wb_text *svg)
 {
     static const char *const openings[] = {" id=\"", "href=\"#", "url(#"};
     static const char closings[] = {'"', '"', ')'};
@@ -82,9 +82,6 @@ static enum wb_status rename_ids(const struct wb_text *raw, const char *name, st
     }
     free(ids.starts);
     free(ids.lengths);
-    if (svg->failed)
-        return wb_fail(WB_ERR_MEMORY, "out of memory drawing figure '%s'", name);
-    return WB_OK;
 }
 
 /* The footer as an element of the file: Cairo draws texts as outlines, in which nobody finds where
@@ -120,11 +117,10 @@ enum wb_status wb_figure_svg(const struct wb_figure *figure, struct wb_text *svg
     struct wb_text raw = {0}, described = {0};
     cairo_surface_t *const surface = cairo_svg_surface_create_for_stream(
         wb_canvas_append, &raw, wb_figure_width(figure), wb_figure_height(figure));
-    enum wb_status status = draw_on(surface, figure);
+    const enum wb_status status = draw_on(surface, figure);
     if (status == WB_OK) {
         describe(figure, &raw, &described);
-        svg->failed |= described.failed;
-        status = rename_ids(&described, wb_figure_name(figure), svg);
+        rename_ids(&described, wb_figure_name(figure), svg);
     }
     wb_text_release(&described);
     wb_text_release(&raw);
@@ -187,7 +183,7 @@ enum wb_status wb_figure_pdf(const struct wb_figure *figure, const char *date_ut
 static enum wb_status write_text(enum wb_status status, struct wb_text *text, const char *path)
 {
     if (status == WB_OK)
-        status = wb_file_write(path, wb_text_string(text), text->length);
+        status = wb_file_write_text(path, text);
     wb_text_release(text);
     return status;
 }

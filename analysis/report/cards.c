@@ -97,8 +97,6 @@ enum wb_status wb_cards_add(struct wb_cards *cards, const char *wire, struct wb_
     struct wb_reason why = {.text = ""};
     make_stem(cards, wire, stem);
     snprintf(name, sizeof name, "%s.yaml", stem);
-    if (properties->failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the report's cards");
     if (wb_card_source_parse(&source, wb_text_string(properties), name, &why) != WB_OK) {
         wb_warn("no cards of %s: %s", wire, why.text);
         wb_text_release(properties);

@@ -1,5 +1,6 @@
 #include "analysis/report/document.h"
 
+#include <assert.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -127,7 +128,6 @@ static char *number_caption(struct wb_document *document, const char *caption)
 {
     struct wb_text text = {0};
     wb_text_append(&text, "<b>Figure %d.</b> %s", ++document->n_figures, caption);
-    document->failed |= text.failed;
     return text.bytes;
 }
 
@@ -148,8 +148,8 @@ struct wb_document_table *wb_document_table(struct wb_document *document, const 
 {
     struct wb_document_table *const table = wb_memory_new(1, sizeof *table);
     add_block(document, WB_BLOCK_TABLE, NULL)->table = table;
-    document->failed |= n_columns > WB_DOCUMENT_COLUMNS;
-    table->n_columns = n_columns < WB_DOCUMENT_COLUMNS ? n_columns : WB_DOCUMENT_COLUMNS;
+    assert(n_columns <= WB_DOCUMENT_COLUMNS);
+    table->n_columns = n_columns;
     table->caption = caption ? copy_text(caption) : NULL;
     for (int i = 0; i < table->n_columns; i++) {
         table->columns[i] = columns[i];

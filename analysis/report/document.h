@@ -3,9 +3,7 @@
  *
  * Text is the markup that Pango and HTML share: <b>, <i>, <sub>, <sup>, <tt>, and &amp; &lt; &gt;.
  * Kind, title, subtitle, footer, number, headings and code are plain text.
- * Builders copy text and return nothing. A text without memory, or a table of too many columns, is
- * remembered in `failed`, which the views refuse. Figures are borrowed and must outlive the
- * document.
+ * Builders copy text and return nothing. Figures are borrowed and must outlive the document.
  */
 #ifndef WB_ANALYSIS_REPORT_DOCUMENT_H
 #define WB_ANALYSIS_REPORT_DOCUMENT_H
@@ -75,7 +73,6 @@ struct wb_document {
     int n, n_figures;
     size_t capacity;
     struct wb_document_block *blocks;
-    bool failed;
 };
 
 /* Starts an empty document. Release it also after a failure; a zeroed one may be released. */

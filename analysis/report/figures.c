@@ -100,7 +100,6 @@ void wb_figures_put(const struct wb_figures *figures, struct wb_document *docume
         wb_document_figures(document, item->figure, wb_text_string(&item->caption),
                             beside ? beside->figure : NULL,
                             beside ? wb_text_string(&beside->caption) : NULL);
-        document->failed |= item->caption.failed || (beside && beside->caption.failed);
     }
 }
 

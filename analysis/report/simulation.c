@@ -48,7 +48,7 @@ static void show(struct wb_simulation *simulation, const char *word)
     wb_text_append_quoted(command, word);
 }
 
-static enum wb_status show_command(struct wb_simulation *simulation, const char *shown)
+static void show_command(struct wb_simulation *simulation, const char *shown)
 {
     struct wb_solve_settings settings = simulation->settings;
     if (settings.model)
@@ -60,21 +60,17 @@ static enum wb_status show_command(struct wb_simulation *simulation, const char 
     show(simulation, "-o");
     show(simulation, simulation->name);
     free(words);
-    if (simulation->command.failed)
-        return wb_fail(WB_ERR_MEMORY, "no room for the command of %s", simulation->name);
-    return WB_OK;
 }
 
-enum wb_status wb_simulation_set(struct wb_simulation *simulation,
-                                 const struct wb_solve_settings *settings, const char *shown,
-                                 struct wb_json *inputs)
+void wb_simulation_set(struct wb_simulation *simulation, const struct wb_solve_settings *settings,
+                       const char *shown, struct wb_json *inputs)
 {
     simulation->inputs = inputs;
     wb_model_inputs_sum(inputs, simulation->inputs_sha256);
     simulation->settings = *settings;
     if (settings->model)
         simulation->settings.model = wb_memory_text(settings->model);
-    return show_command(simulation, shown);
+    show_command(simulation, shown);
 }
 
 void wb_simulation_release(struct wb_simulation *simulation)

@@ -40,10 +40,9 @@ WB_MUST_CHECK enum wb_status wb_simulation_find(struct wb_simulation *simulation
 
 /* Then the settings with which it is computed, and its command, which shows the model, where there
  * is one, as `shown`. A wire's name is borrowed. The inputs are the dataset's
- * (analysis/dataset/simulated.h); the simulation owns them from here on, also on failure. */
-WB_MUST_CHECK enum wb_status wb_simulation_set(struct wb_simulation *simulation,
-                                               const struct wb_solve_settings *settings,
-                                               const char *shown, struct wb_json *inputs);
+ * (analysis/dataset/simulated.h); the simulation owns them from here on. */
+void wb_simulation_set(struct wb_simulation *simulation, const struct wb_solve_settings *settings,
+                       const char *shown, struct wb_json *inputs);
 
 void wb_simulation_release(struct wb_simulation *simulation); /* accepts a zeroed one */
 

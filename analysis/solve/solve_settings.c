@@ -186,10 +186,9 @@ static void add_override(struct words *words, const struct wb_bundle_override *o
 static char **pack(const struct words *words)
 {
     const size_t pointers = (words->n + 1) * sizeof(char *);
-    const char *const bytes = wb_memory_need(words->texts.failed ? NULL : words->texts.bytes);
     char **const block = wb_memory_new(pointers + words->texts.length, 1);
     char *text = (char *)block + pointers;
-    memcpy(text, bytes, words->texts.length);
+    memcpy(text, words->texts.bytes, words->texts.length);
     for (size_t i = 0; i < words->n; i++, text += strlen(text) + 1)
         block[i] = text;
     block[words->n] = NULL;

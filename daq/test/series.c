@@ -229,8 +229,6 @@ enum wb_status wb_series_specimen(const struct wb_series *series, int sample,
     if (like->marker_offset_uncertainty > 0.0)
         wb_text_append(text, "marker_offset_uncertainty_mm: %.10g\n",
                        like->marker_offset_uncertainty / WB_MM);
-    if (text->failed)
-        return wb_fail_to(why, WB_ERR_MEMORY, "out of memory for a specimen");
     return wb_specimen_parse(wb_text_string(text), "specimen", &specimen, why);
 }
 

@@ -127,8 +127,7 @@ static bool put_array(struct wb_text *text, const struct wb_vtk_file_array *arra
 
 static enum wb_status write_text(const char *path, struct wb_text *text)
 {
-    const enum wb_status status = text->failed ? wb_fail(WB_ERR_MEMORY, "no memory for %s", path)
-                                               : wb_file_write(path, text->bytes, text->length);
+    const enum wb_status status = wb_file_write_text(path, text);
     wb_text_release(text);
     return status;
 }
@@ -219,8 +218,6 @@ enum wb_status wb_vtk_file_series_count(struct wb_vtk_file_series *series, doubl
                    wb_number_format(time, number));
     wb_text_append_escaped(&series->states, file);
     wb_text_append(&series->states, "\"/>\n");
-    if (series->states.failed)
-        return wb_fail(WB_ERR_MEMORY, "no memory for the VTK series %s", series->name);
     series->n++;
     return write_list(series);
 }

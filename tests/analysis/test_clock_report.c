@@ -115,7 +115,7 @@ static void a_delay_missing_in_the_rig_file_is_reported(void **state)
     make();
     assert_close(report.lag, EXPECTED + 60.0 * MS, 2.0 * MS);
     assert_false(report.agrees);
-    assert_int_equal(wb_clock_report_format(&report, &text), WB_OK);
+    wb_clock_report_format(&report, &text);
     assert_non_null(strstr(wb_text_string(&text), "NOT AS EXPECTED"));
     wb_text_release(&text);
 }
@@ -168,7 +168,7 @@ static void without_a_reversal_the_lag_is_not_identifiable(void **state)
     make();
     assert_false(report.identifiable);
     assert_false(isfinite(report.lag));
-    assert_int_equal(wb_clock_report_format(&report, &text), WB_OK);
+    wb_clock_report_format(&report, &text);
     assert_non_null(strstr(wb_text_string(&text), "not identifiable: no reversal"));
     wb_text_release(&text);
 }

@@ -1,5 +1,6 @@
 #include "tests/check.h"
 
+#include "base/memory.h"
 #include "base/text.h"
 
 static void text_grows_by_appending(void **state)
@@ -12,7 +13,6 @@ static void text_grows_by_appending(void **state)
     assert_int_equal(text.length, 2000);
     assert_int_equal(strlen(wb_text_string(&text)), 2000);
     assert_memory_equal(wb_text_string(&text), "0,1,2,", 6);
-    assert_false(text.failed);
     wb_text_release(&text);
     assert_int_equal(text.length, 0);
 }
@@ -26,14 +26,20 @@ static void markup_is_escaped(void **state)
     wb_text_release(&text);
 }
 
-static void an_invalid_size_is_recorded_as_failure(void **state)
+static enum wb_status append_an_invalid_size(void *text)
+{
+    wb_text_append_bytes(text, "x", SIZE_MAX);
+    return WB_OK;
+}
+
+static void an_invalid_size_fails_as_an_allocation(void **state)
 {
     (void)state;
     struct wb_text text = {0};
     wb_text_append(&text, "kept");
-    wb_text_append_bytes(&text, "x", SIZE_MAX);
-    wb_text_append(&text, "ignored");
-    assert_true(text.failed);
+    wb_log_set_sink(discard_message, NULL);
+    assert_int_equal(wb_memory_try(append_an_invalid_size, &text), WB_ERR_MEMORY);
+    wb_log_set_sink(NULL, NULL);
     assert_string_equal(wb_text_string(&text), "kept");
     wb_text_release(&text);
 }
@@ -55,7 +61,7 @@ int main(void)
         cmocka_unit_test(text_grows_by_appending),
         cmocka_unit_test(markup_is_escaped),
         cmocka_unit_test(words_are_quoted_for_the_shell),
-        cmocka_unit_test(an_invalid_size_is_recorded_as_failure),
+        cmocka_unit_test(an_invalid_size_fails_as_an_allocation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

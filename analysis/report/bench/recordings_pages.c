@@ -825,7 +825,6 @@ static void append_revisions(struct wb_text *caption, const struct wb_recordings
     }
     if (list.length > 0)
         wb_text_append(caption, " Recorded with revision %s.", wb_text_string(&list));
-    caption->failed |= list.failed;
     wb_text_release(&list);
 }
 

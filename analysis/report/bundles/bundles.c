@@ -149,7 +149,8 @@ static enum wb_status read_run(const struct wb_bundles *all, const struct wb_con
     solve.override = s->override;
     struct wb_json *const inputs = wb_json_create();
     wb_simulated_bundle_inputs(inputs, run->model, run->mesh);
-    return wb_simulation_set(&run->dataset, &solve, run->model_name, inputs);
+    wb_simulation_set(&run->dataset, &solve, run->model_name, inputs);
+    return WB_OK;
 }
 
 static enum wb_status read_runs(struct wb_bundles *all, const struct wb_config_node *list,
@@ -178,7 +179,7 @@ static enum wb_status read_runs(struct wb_bundles *all, const struct wb_config_n
 
 /* --- rods --- */
 
-static enum wb_status set_rod(const struct wb_bundles_run *run, struct wb_simulation *rod)
+static void set_rod(const struct wb_bundles_run *run, struct wb_simulation *rod)
 {
     const struct wb_bundle_model *const model = run->model;
     struct wb_solve_settings settings = {.kind = WB_SOLVE_CANTILEVER};
@@ -201,7 +202,7 @@ static enum wb_status set_rod(const struct wb_bundles_run *run, struct wb_simula
     };
     struct wb_json *const inputs = wb_json_create();
     wb_simulated_cantilever_inputs(inputs, &cantilever);
-    return wb_simulation_set(rod, &settings, NULL, inputs);
+    wb_simulation_set(rod, &settings, NULL, inputs);
 }
 
 /* --- groups --- */
@@ -249,7 +250,8 @@ static enum wb_status read_bundle(struct wb_bundles *all, const struct wb_config
         return wb_config_refuse(node, "rod", "the published beam '%s' is not in fixtures/wires",
                                 beam->name);
     WB_TRY(wb_simulation_find(&bundle->rod, &all->head, rod));
-    return set_rod(run, &bundle->rod);
+    set_rod(run, &bundle->rod);
+    return WB_OK;
 }
 
 static enum wb_status read_figures(const struct wb_config_node *node,

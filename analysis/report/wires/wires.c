@@ -34,7 +34,8 @@ static enum wb_status want(const struct wb_wires *comparison, const char *given,
     settings.model = path;
     struct wb_json *const inputs = wb_json_create();
     wb_simulated_wire_inputs(inputs, item->model, solver == WB_WIRES_SOLID);
-    return wb_simulation_set(dataset, &settings, item->model_name, inputs);
+    wb_simulation_set(dataset, &settings, item->model_name, inputs);
+    return WB_OK;
 }
 
 static enum wb_status read_case(const struct wb_wires *comparison,
