@@ -8,20 +8,13 @@
 #include <jansson.h>
 
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/number.h"
 #include "base/text.h"
 
 #define WB_LOG_DOMAIN "json"
 
-/* A struct wb_json is jansson's json_t under another name: it is never defined.
- *
- * jansson's values have no link to their document. A lost value is therefore recorded per thread,
- * until all documents of the thread are destroyed. */
-static _Thread_local struct {
-    int documents; /* not yet destroyed */
-    bool lost;
-} thread;
-
+/* A struct wb_json is jansson's json_t under another name: it is never defined. */
 static json_t *jansson(const struct wb_json *value)
 {
     return (json_t *)value;
@@ -32,40 +25,23 @@ static struct wb_json *own(json_t *value)
     return (struct wb_json *)value;
 }
 
-static struct wb_json *begin_document(json_t *root)
-{
-    if (thread.documents == 0)
-        thread.lost = false;
-    thread.documents += root != NULL;
-    return own(root);
-}
-
 struct wb_json *wb_json_create(void)
 {
-    return begin_document(json_object());
+    return wb_memory_need(json_object());
 }
 
 void wb_json_destroy(struct wb_json *root)
 {
-    if (root && thread.documents > 0)
-        thread.documents--;
     json_decref(jansson(root));
 }
 
 /* Sets a member of an object (without a key: appends to an array). Takes ownership of `value`,
- * which is NULL if it could not be created. If `list` is NULL, its own failure is already
- * recorded. */
+ * which is NULL if it could not be created. */
 static struct wb_json *put(struct wb_json *list, const char *key, json_t *value)
 {
-    if (!list) {
-        json_decref(value);
-        return NULL;
-    }
-    if ((key ? json_object_set_new(jansson(list), key, value)
-             : json_array_append_new(jansson(list), value)) == 0)
-        return own(value);
-    thread.lost = true;
-    return NULL;
+    const int failed = key ? json_object_set_new(jansson(list), key, value)
+                           : json_array_append_new(jansson(list), value);
+    return own(wb_memory_need(failed ? NULL : value));
 }
 
 static json_t *number(double value)
@@ -78,14 +54,15 @@ static json_t *text(const char *raw)
     if (!raw)
         return json_null();
     json_t *string = json_string(raw);
-    char *const ascii = string ? NULL : strdup(raw);
+    if (string)
+        return string;
     /* Not UTF-8 (bytes from a device, for example): keep the ASCII characters. */
-    for (char *c = ascii; c && *c; c++) {
+    char *const ascii = wb_memory_text(raw);
+    for (char *c = ascii; *c; c++) {
         if ((unsigned char)*c >= 0x80)
             *c = '?';
     }
-    if (ascii)
-        string = json_string(ascii);
+    string = json_string(ascii);
     free(ascii);
     return string;
 }
@@ -181,28 +158,18 @@ static void format_value(struct wb_text *text, json_t *value, int depth)
     } else if (json_is_real(value)) {
         wb_text_append(text, "%s", wb_number_format(json_real_value(value), number_text));
     } else {
-        char *const scalar = json_dumps(value, JSON_ENCODE_ANY);
-        if (scalar)
-            wb_text_append(text, "%s", scalar);
-        else
-            text->failed = true;
+        char *const scalar = wb_memory_need(json_dumps(value, JSON_ENCODE_ANY));
+        wb_text_append(text, "%s", scalar);
         free(scalar);
     }
 }
 
-enum wb_status wb_json_format(const struct wb_json *root, char **text)
+char *wb_json_format(const struct wb_json *root)
 {
-    struct wb_text formatted = {0};
-    if (root && !thread.lost) {
-        format_value(&formatted, jansson(root), 0);
-        wb_text_append(&formatted, "\n");
-    }
-    if (formatted.length == 0 || formatted.failed) {
-        wb_text_release(&formatted);
-        return wb_fail(WB_ERR_MEMORY, "out of memory writing JSON");
-    }
-    *text = formatted.bytes;
-    return WB_OK;
+    struct wb_text text = {0};
+    format_value(&text, jansson(root), 0);
+    wb_text_append(&text, "\n");
+    return text.bytes;
 }
 
 enum wb_status wb_json_parse_with_reason(struct wb_json **root, const char *text,
@@ -217,7 +184,7 @@ enum wb_status wb_json_parse_with_reason(struct wb_json **root, const char *text
         json_decref(parsed);
         return wb_fail_to(why, WB_ERR_FORMAT, "%s: expected a JSON object", origin);
     }
-    *root = begin_document(parsed);
+    *root = own(parsed);
     return WB_OK;
 }
 

@@ -1,11 +1,10 @@
 /* JSON values: built to be written, or read from a file. An interface to jansson, which only json.c
  * uses.
  *
- * Functions that build a document return no status. If memory runs out, or a member is set in a
- * value that is not an object (appended to one that is not an array), the failure is recorded for
- * the thread, and wb_json_format() fails in this thread until all its documents are destroyed.
- * Build and format a document in one thread. Numbers that are not finite become null. Keys keep the
- * order in which they were set.
+ * Functions that build or format a document return no status. If memory runs out, or a member is
+ * set in a value that is not an object (appended to one that is not an array), they end as
+ * base/memory.h describes. Numbers that are not finite become null. Keys keep the order in which
+ * they were set.
  */
 #ifndef WB_BASE_JSON_H
 #define WB_BASE_JSON_H
@@ -19,10 +18,9 @@
 
 struct wb_json; /* a document, or a value in it */
 
-/* A new document whose root is an object; NULL when out of memory. All functions accept NULL:
- * values set in it are dropped, and formatting fails. */
-struct wb_json *wb_json_create(void);
-void wb_json_destroy(struct wb_json *root);
+/* A new document whose root is an object. */
+struct wb_json *wb_json_create(void) __attribute__((returns_nonnull));
+void wb_json_destroy(struct wb_json *root); /* accepts NULL */
 
 /* Sets a member of an object. The text is copied; NULL becomes null. */
 void wb_json_set_text(struct wb_json *object, const char *key, const char *text);
@@ -44,8 +42,8 @@ struct wb_json *wb_json_append_object(struct wb_json *array);
 void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_json *value);
 
 /* Text of the document (caller frees), indented by two spaces, with a final newline; doubles are
- * read back exactly. WB_ERR_MEMORY if a value was lost. */
-WB_MUST_CHECK enum wb_status wb_json_format(const struct wb_json *root, char **text);
+ * read back exactly. */
+char *wb_json_format(const struct wb_json *root) __attribute__((returns_nonnull));
 
 /* Reads a document whose root is an object; messages name file and line. */
 WB_MUST_CHECK enum wb_status wb_json_read(struct wb_json **root, const char *path);
@@ -58,7 +56,7 @@ WB_MUST_CHECK enum wb_status wb_json_parse_with_reason(struct wb_json **root, co
                                                        const char *origin, struct wb_reason *why);
 
 /* Reading: each function returns false and leaves the target unchanged if the member is missing or
- * of another kind. Text is owned by the document. */
+ * of another kind, or the object is NULL. Text is owned by the document. */
 bool wb_json_get_text(const struct wb_json *object, const char *key, const char **text);
 bool wb_json_get_number(const struct wb_json *object, const char *key, double *value);
 bool wb_json_get_integer(const struct wb_json *object, const char *key, int64_t *value);

@@ -25,7 +25,7 @@ static const struct argp argp = {
         "2 wrong usage; 3 the lag is not identifiable or differs from the rig file.",
 };
 
-static int print(const struct wb_clock_report *report, const struct wb_command_common *options)
+static void print(const struct wb_clock_report *report, const struct wb_command_common *options)
 {
     struct wb_text text = {0};
     if (options->json) {
@@ -39,7 +39,6 @@ static int print(const struct wb_clock_report *report, const struct wb_command_c
     printf("%s%s\n%s", options->input, report->dataset.info.is_virtual ? " (virtual rig)" : "",
            wb_text_string(&text));
     wb_text_release(&text);
-    return WB_EXIT_OK;
 }
 
 int wb_cmd_clock(int argc, char **argv)
@@ -50,9 +49,8 @@ int wb_cmd_clock(int argc, char **argv)
     if (wb_file_kind_check(options.input, WB_FILE_BIT(WB_FILE_RECORDING)) != WB_OK ||
         wb_clock_report_make(&report, options.input, NULL) != WB_OK)
         return WB_EXIT_FAILED;
-    int code = print(&report, &options);
-    if (code == WB_EXIT_OK && !(report.identifiable && report.agrees))
-        code = WB_EXIT_INCOMPLETE;
+    print(&report, &options);
+    const bool as_expected = report.identifiable && report.agrees;
     wb_clock_report_release(&report);
-    return code;
+    return as_expected ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }

@@ -281,7 +281,9 @@ static enum wb_status show(void *context, const struct wb_solve *solve)
         return WB_OK;
     }
     struct wb_text text = {0};
-    if (wb_solve_summarise(solve, &text))
+    if (common->json)
+        print_json(solve);
+    else if (wb_solve_summarise(solve, &text))
         fputs(wb_text_string(&text), stdout);
     else if (!common->output)
         print_csv(solve);

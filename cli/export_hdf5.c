@@ -73,20 +73,18 @@ static enum wb_status take_recording(struct job *job)
 
 /* --- datasets --- */
 
-static enum wb_status keep_dataset(struct job *job, const struct wb_dataset *dataset)
+static void keep_dataset(struct job *job, const struct wb_dataset *dataset)
 {
     static const struct wb_column_kind kinds[] = {{"json", "", WB_COLUMN_TEXT}};
     struct wb_columns *const document = &job->tables[WB_DATASET_COLUMNS_TABLES];
-    char *text = NULL;
+    char *const text = wb_json_format(dataset->document);
     wb_dataset_columns_make(job->tables, dataset);
     job->n = WB_DATASET_COLUMNS_TABLES + 1;
     wb_columns_init(document, "dataset", kinds, 1);
-    WB_TRY(wb_json_format(dataset->document, &text));
     wb_columns_add_row(document, (const union wb_cell[]){{.text = text}});
     free(text);
     job->is_virtual = dataset->info.is_virtual;
     job->is_complete = true;
-    return WB_OK;
 }
 
 static enum wb_status take_dataset(struct job *job)
@@ -95,9 +93,9 @@ static enum wb_status take_dataset(struct job *job)
                            WB_TEST_BIT(WB_TEST_TENSILE);
     struct wb_dataset dataset = {0};
     char path[WB_PATH];
-    enum wb_status status = wb_dataset_read_kinds(&dataset, job->options->input, kinds, NULL);
+    const enum wb_status status = wb_dataset_read_kinds(&dataset, job->options->input, kinds, NULL);
     if (status == WB_OK)
-        status = keep_dataset(job, &dataset);
+        keep_dataset(job, &dataset);
     wb_dataset_release(&dataset);
     WB_TRY(status);
     WB_TRY(wb_file_join(path, job->options->input, "force_deflection.csv"));

@@ -11,13 +11,11 @@
  * on one line, because each line of an event needs the name of its field. */
 static void append_document(struct wb_text *text, const char *name, struct wb_json *root)
 {
-    char *json = NULL;
-    if (wb_json_format(root, &json) == WB_OK) {
-        for (char *at = json; *at; at++)
-            if (*at == '\n')
-                *at = ' ';
-        wb_text_append(text, "event: %s\ndata: %s\n\n", name, json);
-    }
+    char *const json = wb_json_format(root);
+    for (char *at = json; *at; at++)
+        if (*at == '\n')
+            *at = ' ';
+    wb_text_append(text, "event: %s\ndata: %s\n\n", name, json);
     free(json);
     wb_json_destroy(root);
 }

@@ -135,17 +135,14 @@ enum wb_status wb_card_table_json(const struct wb_card_source *source,
 {
     struct wb_card_curve curve;
     struct wb_estimate residual_curvature_ratio;
-    char *formatted;
     (void)settings, (void)why;
     WB_TRY(wb_card_curve_init(&curve, source));
     WB_TRY(find_residual_curvature_ratio(source, &residual_curvature_ratio));
     struct wb_json *const root = make_json(source, &curve, &residual_curvature_ratio);
-    const enum wb_status status = wb_json_format(root, &formatted);
+    char *const formatted = wb_json_format(root);
     wb_json_destroy(root);
-    WB_TRY(status);
     /* The origin is on the first line, after the bracket. */
-    const char *const first = strchr(formatted, '"');
-    wb_text_append(text, "{ %s", first ? first : "");
+    wb_text_append(text, "{ %s", strchr(formatted, '"'));
     free(formatted);
     return WB_OK;
 }

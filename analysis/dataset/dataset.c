@@ -82,7 +82,7 @@ void wb_dataset_init(struct wb_dataset *dataset)
 {
     memset(dataset, 0, sizeof *dataset);
     dataset->info.rest_level = (double)NAN;
-    dataset->document = wb_memory_need(wb_json_create());
+    dataset->document = wb_json_create();
     wb_json_set_integer(dataset->document, "schema", SCHEMA);
 }
 
@@ -598,15 +598,14 @@ enum wb_status wb_dataset_parse_shapes(struct wb_dataset *dataset, const char *p
 static enum wb_status format_document(const struct wb_dataset *dataset, char **text)
 {
     struct wb_json *copy;
-    char *raw;
-    WB_TRY(wb_json_format(dataset->document, &raw));
+    char *const raw = wb_json_format(dataset->document);
     const enum wb_status parsed = wb_json_parse(&copy, raw, "dataset document");
     free(raw);
     WB_TRY(parsed);
     set_info(copy, &dataset->info);
-    const enum wb_status status = wb_json_format(copy, text);
+    *text = wb_json_format(copy);
     wb_json_destroy(copy);
-    return status;
+    return WB_OK;
 }
 
 enum wb_status wb_dataset_begin(const char *folder, bool force)

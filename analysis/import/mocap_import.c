@@ -407,10 +407,10 @@ static enum wb_status find_tare(struct import *import)
 static enum wb_status add_file(struct wb_recording *recording, enum wb_role role,
                                const struct source *source, double first, double last)
 {
-    char address[160], *settings;
+    char address[160];
     int id;
     snprintf(address, sizeof address, WB_RECORDING_FOREIGN "%s", source->foreign.name);
-    WB_TRY(wb_foreign_format(&source->foreign, &settings));
+    char *const settings = wb_foreign_format(&source->foreign);
     const enum wb_status status =
         wb_recording_add_stream(recording, role, address, source->foreign.format, settings, &id);
     free(settings);
@@ -425,7 +425,6 @@ static enum wb_status add_report(const struct import *import, struct wb_recordin
 {
     const struct wb_mocap_import *const r = import->result;
     struct wb_json *const root = wb_json_create();
-    char *text;
     wb_json_set_text(root, "take", import->take_file.foreign.name);
     wb_json_set_text(root, "take_sha256", import->take_file.foreign.sha256);
     wb_json_set_text(root, "format", r->format);
@@ -453,10 +452,9 @@ static enum wb_status add_report(const struct import *import, struct wb_recordin
         wb_json_set_integer(root, "events_paired", r->sync.n_events);
         wb_json_set_number(root, "offset_s", r->offset);
     }
-    enum wb_status status = wb_json_format(root, &text);
+    char *const text = wb_json_format(root);
     wb_json_destroy(root);
-    WB_TRY(status);
-    status = wb_recording_set_meta(recording, "import", text);
+    const enum wb_status status = wb_recording_set_meta(recording, "import", text);
     free(text);
     return status;
 }

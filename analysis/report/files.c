@@ -40,17 +40,15 @@ static struct wb_text *add_output(struct outputs *outputs, const char *folder, c
     return &output->bytes;
 }
 
-static enum wb_status draw_json(struct outputs *outputs, struct wb_json *numbers)
+static void draw_json(struct outputs *outputs, struct wb_json *numbers)
 {
     struct wb_text *const bytes = add_output(outputs, "", "report", "json");
     struct wb_json *const files = wb_json_set_array(numbers, "files");
-    char *text;
     for (int i = 0; i < outputs->n; i++)
         wb_json_append_text(files, outputs->items[i].name);
-    WB_TRY(wb_json_format(numbers, &text));
-    wb_text_append_bytes(bytes, text, strlen(text));
+    char *const text = wb_json_format(numbers);
+    wb_text_append(bytes, "%s", text);
     free(text);
-    return WB_OK;
 }
 
 /* Figures drawn one after the other, as Pango does not shape texts on several threads. */
@@ -115,7 +113,8 @@ static enum wb_status draw(struct outputs *outputs, const struct wb_document *do
         wb_text_append_bytes(&output->bytes, cards->files[i].bytes.bytes,
                              cards->files[i].bytes.length);
     }
-    return draw_json(outputs, numbers);
+    draw_json(outputs, numbers);
+    return WB_OK;
 }
 
 static void release(struct outputs *outputs)

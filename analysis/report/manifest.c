@@ -174,16 +174,14 @@ static enum wb_status fill(struct wb_json *root, const struct wb_kind *kind, con
 enum wb_status wb_manifest_write(const struct wb_kind *kind, const void *results,
                                  const char *folder)
 {
-    char path[WB_PATH], *text;
+    char path[WB_PATH];
     WB_TRY(wb_file_join(path, folder, wb_manifest_name));
     struct wb_json *const root = wb_json_create();
     enum wb_status status = fill(root, kind, results, folder);
-    if (status == WB_OK)
-        status = wb_json_format(root, &text);
+    char *const text = wb_json_format(root);
     wb_json_destroy(root);
-    if (status != WB_OK)
-        return status;
-    status = wb_file_write(path, text, strlen(text));
+    if (status == WB_OK)
+        status = wb_file_write(path, text, strlen(text));
     free(text);
     return status;
 }

@@ -147,8 +147,10 @@ static enum wb_status list_datasets(struct making *making)
                        kind->data);
     wb_simulation_count(kind->datasets, making->results, &n_wanted, &n_usable);
     making->end = n_usable < n_wanted ? WB_REPORT_INCOMPLETE : WB_REPORT_NOTHING;
-    if (making->order->quiet)
-        return wb_simulation_print_json(stdout, kind->datasets, making->results);
+    if (making->order->quiet) {
+        wb_simulation_print_json(stdout, kind->datasets, making->results);
+        return WB_OK;
+    }
     printf("%d of %d datasets are missing, outdated or refused\n", n_wanted - n_usable, n_wanted);
     wb_simulation_print_missing(stdout, kind->datasets, making->results);
     return WB_OK;

@@ -222,12 +222,11 @@ void wb_simulation_print_missing(FILE *out, wb_simulation_list *list, const void
     }
 }
 
-enum wb_status wb_simulation_print_json(FILE *out, wb_simulation_list *list, const void *results)
+void wb_simulation_print_json(FILE *out, wb_simulation_list *list, const void *results)
 {
     struct wb_simulation_entry entry;
     struct wb_json *const root = wb_json_create();
     struct wb_json *const datasets = wb_json_set_array(root, "datasets");
-    char *text;
     for (int i = 0; list(results, i, &entry); i++) {
         if (!entry.wanted->wanted)
             continue;
@@ -236,10 +235,8 @@ enum wb_status wb_simulation_print_json(FILE *out, wb_simulation_list *list, con
         if (entry.wanted->inputs)
             wb_json_set_copy(object, "inputs", entry.wanted->inputs);
     }
-    const enum wb_status status = wb_json_format(root, &text);
+    char *const text = wb_json_format(root);
     wb_json_destroy(root);
-    WB_TRY(status);
     fputs(text, out);
     free(text);
-    return WB_OK;
 }

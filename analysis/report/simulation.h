@@ -114,7 +114,6 @@ void wb_simulation_count(wb_simulation_list *list, const void *results, int *n_w
 void wb_simulation_print_missing(FILE *out, wb_simulation_list *list, const void *results);
 
 /* Prints all that are wanted with their state and the inputs that they must have, as a document. */
-WB_MUST_CHECK enum wb_status wb_simulation_print_json(FILE *out, wb_simulation_list *list,
-                                                      const void *results);
+void wb_simulation_print_json(FILE *out, wb_simulation_list *list, const void *results);
 
 #endif

@@ -19,7 +19,7 @@
 
 /* --- settings --- */
 
-enum wb_status wb_foreign_format(const struct wb_foreign *foreign, char **text)
+char *wb_foreign_format(const struct wb_foreign *foreign)
 {
     struct wb_json *const root = wb_json_create();
     wb_json_set_text(root, "file", foreign->name);
@@ -34,9 +34,9 @@ enum wb_status wb_foreign_format(const struct wb_foreign *foreign, char **text)
         wb_json_set_text(root, "unit", foreign->unit);
     if (foreign->columns[0])
         wb_json_set_text(root, "columns", foreign->columns);
-    const enum wb_status status = wb_json_format(root, text);
+    char *const text = wb_json_format(root);
     wb_json_destroy(root);
-    return status;
+    return text;
 }
 
 static void copy_text(const struct wb_json *root, const char *key, char *to, size_t size)

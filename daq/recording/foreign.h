@@ -24,8 +24,8 @@ struct wb_foreign {
     char columns[WB_FORCE_TABLE_LIST]; /* of a table: columns and units of time and force */
 };
 
-/* Formats the settings as JSON; the caller frees *text. */
-WB_MUST_CHECK enum wb_status wb_foreign_format(const struct wb_foreign *foreign, char **text);
+/* The settings as JSON; the caller frees the text. */
+char *wb_foreign_format(const struct wb_foreign *foreign);
 /* Parses the settings. WB_ERR_FORMAT, with the reason in `why`, if they are invalid. */
 WB_MUST_CHECK enum wb_status wb_foreign_parse(struct wb_foreign *foreign, const char *text,
                                               struct wb_reason *why);

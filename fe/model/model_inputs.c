@@ -228,10 +228,7 @@ void wb_model_inputs_wire(struct wb_json *object, const struct wb_wire_model *mo
 
 void wb_model_inputs_sum(const struct wb_json *object, char sha256[WB_SHA256_TEXT])
 {
-    char *text = NULL;
-    /* If the text cannot be formatted, the sum is that of an empty text, which no model has. */
-    if (wb_json_format(object, &text) != WB_OK)
-        text = NULL;
-    wb_hash_bytes(text ? text : "", text ? strlen(text) : 0, sha256);
+    char *const text = wb_json_format(object);
+    wb_hash_bytes(text, strlen(text), sha256);
     free(text);
 }

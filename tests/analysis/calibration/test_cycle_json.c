@@ -243,9 +243,8 @@ static void a_refuted_rule_leaves_only_ranges(void **state)
 static struct wb_json *put(const struct made *made)
 {
     struct wb_json *const root = wb_json_create(), *read;
-    char *text;
     wb_cycle_json_put(root, &made->calibration);
-    assert_int_equal(wb_json_format(root, &text), WB_OK);
+    char *const text = wb_json_format(root);
     wb_json_destroy(root);
     assert_int_equal(wb_json_parse(&read, text, "text"), WB_OK);
     free(text);
