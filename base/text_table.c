@@ -6,6 +6,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include <glib.h>
+
 #include "base/config.h"
 #include "base/memory.h"
 #include "base/number.h"
@@ -37,35 +39,14 @@ struct decoded_text {
     bool cut; /* incomplete character at the end, dropped */
 };
 
-/* Length of the UTF-8 character at `at`; 0 if it is invalid: overlong, a surrogate, or beyond
- * Unicode. */
-static size_t utf8_length(const uint8_t *at, size_t n)
+/* A NUL is valid UTF-8; it is rejected later, as a character that is not text. */
+static bool is_utf8(const char *bytes, size_t n)
 {
-    if (at[0] < 0x80)
-        return 1;
-    const size_t length = at[0] >= 0xc2 && at[0] <= 0xdf   ? 2
-                          : (at[0] & 0xf0) == 0xe0         ? 3
-                          : at[0] >= 0xf0 && at[0] <= 0xf4 ? 4
-                                                           : 0;
-    if (length == 0 || length > n)
-        return 0;
-    for (size_t i = 1; i < length; i++) {
-        if ((at[i] & 0xc0) != 0x80)
-            return 0;
-    }
-    if ((at[0] == 0xe0 && at[1] < 0xa0) || (at[0] == 0xed && at[1] > 0x9f) ||
-        (at[0] == 0xf0 && at[1] < 0x90) || (at[0] == 0xf4 && at[1] > 0x8f))
-        return 0;
-    return length;
-}
-
-static bool is_utf8(const uint8_t *bytes, size_t n)
-{
-    for (size_t i = 0; i < n;) {
-        const size_t length = utf8_length(bytes + i, n - i);
-        if (length == 0)
+    const char *const end = bytes + n;
+    while (!g_utf8_validate_len(bytes, (gsize)(end - bytes), &bytes)) {
+        if (*bytes != '\0')
             return false;
-        i += length;
+        bytes++;
     }
     return true;
 }
@@ -84,7 +65,8 @@ static size_t find_encoding(const uint8_t *bytes, size_t n, struct decoded_text 
 {
     text->byte_order_mark = true;
     if (n >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0) {
-        text->encoding = is_utf8(bytes + 3, n - 3) ? WB_ENCODING_UTF8 : WB_ENCODING_LATIN1;
+        text->encoding =
+            is_utf8((const char *)bytes + 3, n - 3) ? WB_ENCODING_UTF8 : WB_ENCODING_LATIN1;
         return 3;
     }
     if (n >= 2 && memcmp(bytes, "\xff\xfe", 2) == 0) {
@@ -96,35 +78,11 @@ static size_t find_encoding(const uint8_t *bytes, size_t n, struct decoded_text 
         return 2;
     }
     text->byte_order_mark = false;
-    text->encoding = has_zeros_in(bytes, n, 1)   ? WB_ENCODING_UTF16_LE
-                     : has_zeros_in(bytes, n, 0) ? WB_ENCODING_UTF16_BE
-                     : is_utf8(bytes, n)         ? WB_ENCODING_UTF8
-                                                 : WB_ENCODING_LATIN1;
+    text->encoding = has_zeros_in(bytes, n, 1)         ? WB_ENCODING_UTF16_LE
+                     : has_zeros_in(bytes, n, 0)       ? WB_ENCODING_UTF16_BE
+                     : is_utf8((const char *)bytes, n) ? WB_ENCODING_UTF8
+                                                       : WB_ENCODING_LATIN1;
     return 0;
-}
-
-static size_t put_utf8(char *to, uint32_t c)
-{
-    if (c < 0x80) {
-        to[0] = (char)c;
-        return 1;
-    }
-    if (c < 0x800) {
-        to[0] = (char)(0xc0 | c >> 6);
-        to[1] = (char)(0x80 | (c & 0x3f));
-        return 2;
-    }
-    if (c < 0x10000) {
-        to[0] = (char)(0xe0 | c >> 12);
-        to[1] = (char)(0x80 | (c >> 6 & 0x3f));
-        to[2] = (char)(0x80 | (c & 0x3f));
-        return 3;
-    }
-    to[0] = (char)(0xf0 | c >> 18);
-    to[1] = (char)(0x80 | (c >> 12 & 0x3f));
-    to[2] = (char)(0x80 | (c >> 6 & 0x3f));
-    to[3] = (char)(0x80 | (c & 0x3f));
-    return 4;
 }
 
 /* Line and column of the end of a text, from 1, for messages. */
@@ -172,7 +130,7 @@ static enum wb_status decode_utf16(const uint8_t *bytes, size_t n, const char *n
         }
         if (!is_text(c))
             return reject_character(text, name, c, "not a text character", why);
-        text->size += put_utf8(text->bytes + text->size, c);
+        text->size += (size_t)g_unichar_to_utf8(c, text->bytes + text->size);
     }
     text->cut = n % 2 != 0;
     return WB_OK;
@@ -188,7 +146,7 @@ static enum wb_status decode_bytes(const uint8_t *bytes, size_t n, const char *n
         if (bytes[i] == 0x1a)
             continue;
         if (latin1)
-            text->size += put_utf8(text->bytes + text->size, bytes[i]);
+            text->size += (size_t)g_unichar_to_utf8(bytes[i], text->bytes + text->size);
         else
             text->bytes[text->size++] = (char)bytes[i];
     }
@@ -642,8 +600,8 @@ static int cut_fields(char *line, char delimiter, int most, char **fields)
     return last > most ? most + 1 : last;
 }
 
-static enum wb_status fill_names(struct wb_text_table *table, const struct lines *lines,
-                                 size_t header, size_t units)
+static void fill_names(struct wb_text_table *table, const struct lines *lines, size_t header,
+                       size_t units)
 {
     char *fields[MAX_COLUMNS];
     for (int k = 0; k < table->n_columns; k++)
@@ -659,7 +617,6 @@ static enum wb_status fill_names(struct wb_text_table *table, const struct lines
         for (int k = 0; k < n && k < table->n_columns; k++)
             table->columns[k].unit = fields[k];
     }
-    return WB_OK;
 }
 
 static enum wb_status fill_rows(struct wb_text_table *table, struct lines *lines, size_t first,
@@ -719,7 +676,7 @@ static enum wb_status fill(struct wb_text_table *table, struct lines *lines,
     table->columns = wb_memory_new((size_t)table->n_columns, sizeof *table->columns);
     table->fields = wb_memory_new(n * (size_t)table->n_columns, sizeof *table->fields);
     table->lines = wb_memory_new(n, sizeof *table->lines);
-    WB_TRY(fill_names(table, lines, header, units));
+    fill_names(table, lines, header, units);
     const size_t first = units < lines->n ? units + 1 : header < lines->n ? header + 1 : body;
     return fill_rows(table, lines, first, body, name, why);
 }
