@@ -96,6 +96,8 @@ static void draw_line(cairo_t *cairo, const struct wb_layout_panel *layout,
 {
     bool open = false;
     double last_x = 0.0, last_y = 0.0;
+    if (!(series->style.width > 0.0))
+        return;
     cairo_new_path(cairo);
     for (size_t i = 0; i < series->n; i++) {
         const double x = wb_layout_x(layout, series->x[i]), y = wb_layout_y(layout, series->y[i]);
@@ -209,21 +211,26 @@ static void draw_image(cairo_t *cairo, const struct wb_layout_panel *layout,
     cairo_surface_destroy(image);
 }
 
+/* Draws the series of one kind that have points. */
+static void
+draw_kind(cairo_t *cairo, const struct wb_layout_panel *layout, enum wb_series_kind kind,
+          void (*draw)(cairo_t *, const struct wb_layout_panel *, const struct wb_series *))
+{
+    for (int i = 0; i < layout->panel->n_series; i++) {
+        const struct wb_series *const series = &layout->panel->series[i];
+        if (series->kind == kind && series->n > 0)
+            draw(cairo, layout, series);
+    }
+}
+
 static void draw_fields(cairo_t *cairo, const struct wb_layout_panel *layout)
 {
-    const struct wb_panel *const panel = layout->panel;
     const struct wb_place_box *const plot = &layout->plot;
     cairo_save(cairo);
     cairo_rectangle(cairo, plot->x, plot->y, plot->width, plot->height);
     cairo_clip(cairo);
-    for (int i = 0; i < panel->n_series; i++) {
-        if (panel->series[i].kind == WB_SERIES_IMAGE && panel->series[i].n > 0)
-            draw_image(cairo, layout, &panel->series[i]);
-    }
-    for (int i = 0; i < panel->n_series; i++) {
-        if (panel->series[i].kind == WB_SERIES_FIELD)
-            wb_shading_draw_field(cairo, layout, &panel->series[i]);
-    }
+    draw_kind(cairo, layout, WB_SERIES_IMAGE, draw_image);
+    draw_kind(cairo, layout, WB_SERIES_FIELD, wb_shading_draw_field);
     cairo_restore(cairo);
 }
 
@@ -234,21 +241,9 @@ static void draw_series(cairo_t *cairo, const struct wb_layout_panel *layout)
     cairo_save(cairo);
     cairo_rectangle(cairo, plot->x, plot->y, plot->width, plot->height);
     cairo_clip(cairo);
-    for (int i = 0; i < panel->n_series; i++) {
-        if (panel->series[i].kind == WB_SERIES_BAND && panel->series[i].n > 0)
-            draw_band(cairo, layout, &panel->series[i]);
-    }
-    for (int i = 0; i < panel->n_series; i++) {
-        if (panel->series[i].kind == WB_SERIES_AREA)
-            draw_area(cairo, layout, &panel->series[i]);
-    }
-    for (int i = 0; i < panel->n_series; i++) {
-        const struct wb_series *const series = &panel->series[i];
-        if (series->n == 0 || !(series->style.width > 0.0))
-            continue;
-        if (series->kind == WB_SERIES_LINE)
-            draw_line(cairo, layout, series);
-    }
+    draw_kind(cairo, layout, WB_SERIES_BAND, draw_band);
+    draw_kind(cairo, layout, WB_SERIES_AREA, draw_area);
+    draw_kind(cairo, layout, WB_SERIES_LINE, draw_line);
     cairo_restore(cairo);
     for (int i = 0; i < panel->n_series; i++) {
         const struct wb_series *const series = &panel->series[i];
@@ -292,34 +287,36 @@ static void draw_upright(cairo_t *cairo, double x, double y, const char *markup,
     cairo_restore(cairo);
 }
 
+/* Ticks of a scale at the left (side -1) or right (1) of the plot, from its frame outwards. */
+static void draw_side_ticks(cairo_t *cairo, const struct wb_layout_panel *layout,
+                            const struct wb_scale *scale, int side)
+{
+    const struct wb_place_box *const plot = &layout->plot;
+    const double frame = side < 0 ? plot->x : plot->x + plot->width, end = frame + 2.5 * side;
+    struct wb_typeset_style style = wb_layout_tick_style(layout);
+    style.align = side < 0 ? WB_ALIGN_RIGHT : WB_ALIGN_LEFT;
+    for (int i = 0; i < scale->n_ticks; i++) {
+        const double y = plot->y + plot->height * (1.0 - wb_scale_position(scale, scale->ticks[i]));
+        const double height = wb_typeset_measure(cairo, scale->labels[i], &style).height;
+        rule(cairo, fmin(frame, end), y, fmax(frame, end), y);
+        wb_typeset_draw(cairo, frame + 4.5 * side, y - 0.5 * height, scale->labels[i], &style);
+    }
+}
+
 static void draw_tick_labels(cairo_t *cairo, const struct wb_layout_panel *layout)
 {
     const struct wb_place_box *const plot = &layout->plot;
     struct wb_typeset_style style = wb_layout_tick_style(layout);
     style.align = WB_ALIGN_CENTRE;
-    const double bottom = plot->y + plot->height, right = plot->x + plot->width;
+    const double bottom = plot->y + plot->height;
     for (int i = 0; i < layout->x.n_ticks; i++) {
         const double x = wb_layout_x(layout, layout->x.ticks[i]);
         rule(cairo, x, bottom, x, bottom + 2.5);
         wb_typeset_draw(cairo, x, bottom + 3.5, layout->x.labels[i], &style);
     }
-    style.align = WB_ALIGN_RIGHT;
-    for (int i = 0; i < layout->y.n_ticks; i++) {
-        const double y = wb_layout_y(layout, layout->y.ticks[i]);
-        const double height = wb_typeset_measure(cairo, layout->y.labels[i], &style).height;
-        rule(cairo, plot->x - 2.5, y, plot->x, y);
-        wb_typeset_draw(cairo, plot->x - 4.5, y - 0.5 * height, layout->y.labels[i], &style);
-    }
-    if (!(layout->panel->right_factor > 0.0))
-        return;
-    style.align = WB_ALIGN_LEFT;
-    for (int i = 0; i < layout->right.n_ticks; i++) {
-        const double part = wb_scale_position(&layout->right, layout->right.ticks[i]);
-        const double y = plot->y + plot->height * (1.0 - part);
-        const double height = wb_typeset_measure(cairo, layout->right.labels[i], &style).height;
-        rule(cairo, right, y, right + 2.5, y);
-        wb_typeset_draw(cairo, right + 4.5, y - 0.5 * height, layout->right.labels[i], &style);
-    }
+    draw_side_ticks(cairo, layout, &layout->y, -1);
+    if (layout->panel->right_factor > 0.0)
+        draw_side_ticks(cairo, layout, &layout->right, 1);
 }
 
 static void draw_axes(cairo_t *cairo, const struct wb_layout_panel *layout)

@@ -192,16 +192,6 @@ void wb_figure_hide_axes(struct wb_panel *panel)
     panel->hidden_axes = true;
 }
 
-static struct wb_series *add_series(struct wb_panel *panel, enum wb_series_kind kind,
-                                    const char *label)
-{
-    panel->series = wb_memory_room(panel->series, &panel->capacity, (size_t)panel->n_series + 1,
-                                   sizeof *panel->series);
-    struct wb_series *const series = &panel->series[panel->n_series++];
-    *series = (struct wb_series){.kind = kind, .label = label ? wb_memory_text(label) : NULL};
-    return series;
-}
-
 static double *copy_values(const double *values, size_t n)
 {
     double *const copy = wb_memory_new(n, sizeof *copy);
@@ -210,41 +200,45 @@ static double *copy_values(const double *values, size_t n)
     return copy;
 }
 
+/* Adds a series of n points (x, y). */
+static struct wb_series *add_series(struct wb_panel *panel, enum wb_series_kind kind,
+                                    const char *label, size_t n, const double *x, const double *y)
+{
+    panel->series = wb_memory_room(panel->series, &panel->capacity, (size_t)panel->n_series + 1,
+                                   sizeof *panel->series);
+    struct wb_series *const series = &panel->series[panel->n_series++];
+    *series = (struct wb_series){.kind = kind,
+                                 .label = label ? wb_memory_text(label) : NULL,
+                                 .n = n,
+                                 .x = copy_values(x, n),
+                                 .y = copy_values(y, n)};
+    return series;
+}
+
 void wb_figure_add_line(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *y, const struct wb_figure_style *style)
 {
-    struct wb_series *const series = add_series(panel, WB_SERIES_LINE, label);
-    series->style = *style;
-    series->x = copy_values(x, n);
-    series->y = copy_values(y, n);
-    series->n = n;
+    add_series(panel, WB_SERIES_LINE, label, n, x, y)->style = *style;
 }
 
 void wb_figure_add_band(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *const edges[2], struct wb_colour colour)
 {
-    struct wb_series *const series = add_series(panel, WB_SERIES_BAND, label);
+    struct wb_series *const series = add_series(panel, WB_SERIES_BAND, label, n, x, edges[0]);
     series->style.colour = colour;
-    series->x = copy_values(x, n);
-    series->y = copy_values(edges[0], n);
     series->high = copy_values(edges[1], n);
-    series->n = n;
 }
 
 void wb_figure_add_area(struct wb_panel *panel, const char *label, size_t n, const double *x,
                         const double *y, struct wb_colour colour)
 {
-    struct wb_series *const series = add_series(panel, WB_SERIES_AREA, label);
-    series->style.colour = colour;
-    series->x = copy_values(x, n);
-    series->y = copy_values(y, n);
-    series->n = n;
+    add_series(panel, WB_SERIES_AREA, label, n, x, y)->style.colour = colour;
 }
 
 void wb_figure_add_field(struct wb_panel *panel, int n_faces, const struct wb_contour_face *faces,
                          const struct wb_figure_colours *colours)
 {
-    struct wb_series *const series = add_series(panel, WB_SERIES_FIELD, NULL);
+    struct wb_series *const series = add_series(panel, WB_SERIES_FIELD, NULL, 0, NULL, NULL);
     series->colours = complete(colours);
     const struct wb_contour_levels levels = {series->colours.low, series->colours.high,
                                              series->colours.n};
@@ -253,8 +247,8 @@ void wb_figure_add_field(struct wb_panel *panel, int n_faces, const struct wb_co
         panel->figure->failed = true;
         return;
     }
-    series->x = wb_memory_new(n, sizeof *series->x);
-    series->y = wb_memory_new(n, sizeof *series->y);
+    series->x = wb_memory_resize(series->x, n, sizeof *series->x);
+    series->y = wb_memory_resize(series->y, n, sizeof *series->y);
     for (size_t i = 0; i < n; i++) {
         series->x[i] = faces[i / 8].x[i % 8];
         series->y[i] = faces[i / 8].y[i % 8];
@@ -264,11 +258,9 @@ void wb_figure_add_field(struct wb_panel *panel, int n_faces, const struct wb_co
 
 void wb_figure_add_image(struct wb_panel *panel, const struct wb_figure_image *image)
 {
-    struct wb_series *const series = add_series(panel, WB_SERIES_IMAGE, NULL);
     const size_t n = (size_t)image->width * (size_t)image->height;
     const double x[2] = {image->low[0], image->high[0]}, y[2] = {image->low[1], image->high[1]};
-    series->x = copy_values(x, 2);
-    series->y = copy_values(y, 2);
+    struct wb_series *const series = add_series(panel, WB_SERIES_IMAGE, NULL, 2, x, y);
     if (n == 0) {
         panel->figure->failed = true;
         return;
@@ -277,14 +269,9 @@ void wb_figure_add_image(struct wb_panel *panel, const struct wb_figure_image *i
     memcpy(series->pixels, image->pixels, n * sizeof *series->pixels);
     series->pixels_across = image->width;
     series->pixels_down = image->height;
-    series->n = 2;
 }
 
 void wb_figure_add_text(struct wb_panel *panel, double x, double y, int side, const char *markup)
 {
-    struct wb_series *const series = add_series(panel, WB_SERIES_TEXT, markup);
-    series->side = side;
-    series->x = copy_values(&x, 1);
-    series->y = copy_values(&y, 1);
-    series->n = 1;
+    add_series(panel, WB_SERIES_TEXT, markup, 1, &x, &y)->side = side;
 }

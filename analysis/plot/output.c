@@ -33,24 +33,22 @@ static enum wb_status draw_on(cairo_surface_t *surface, const struct wb_figure *
 /* The ids that Cairo gave, in the order of their first appearance. */
 struct id_list {
     size_t n, capacity;
-    const char **starts; /* into the text */
-    size_t *lengths;
+    struct {
+        const char *start; /* into the text */
+        size_t length;
+    } * ids;
 };
 
-static size_t number_of_id(struct id_list *ids, const char *start, size_t length)
+static size_t number_of_id(struct id_list *list, const char *start, size_t length)
 {
-    for (size_t i = 0; i < ids->n; i++) {
-        if (ids->lengths[i] == length && memcmp(ids->starts[i], start, length) == 0)
+    for (size_t i = 0; i < list->n; i++) {
+        if (list->ids[i].length == length && memcmp(list->ids[i].start, start, length) == 0)
             return i;
     }
-    if (ids->n == ids->capacity) {
-        ids->capacity = 2 * ids->capacity + 64;
-        ids->starts = wb_memory_resize(ids->starts, ids->capacity, sizeof *ids->starts);
-        ids->lengths = wb_memory_resize(ids->lengths, ids->capacity, sizeof *ids->lengths);
-    }
-    ids->starts[ids->n] = start;
-    ids->lengths[ids->n] = length;
-    return ids->n++;
+    list->ids = wb_memory_room(list->ids, &list->capacity, list->n + 1, sizeof *list->ids);
+    list->ids[list->n].start = start;
+    list->ids[list->n].length = length;
+    return list->n++;
 }
 
 /* Cairo's ids (glyph0-1, surface12) repeat from figure to figure and count over the whole process.
@@ -59,7 +57,7 @@ static void rename_ids(const struct wb_text *raw, const char *name, struct wb_te
 {
     static const char *const openings[] = {" id=\"", "href=\"#", "url(#"};
     static const char closings[] = {'"', '"', ')'};
-    struct id_list ids = {0};
+    struct id_list list = {0};
     const char *position = wb_text_string(raw);
     while (*position) {
         const char *next = NULL;
@@ -77,11 +75,10 @@ static void rename_ids(const struct wb_text *raw, const char *name, struct wb_te
             break;
         }
         wb_text_append_bytes(svg, position, (size_t)(next - position));
-        wb_text_append(svg, "%s-%zu", name, number_of_id(&ids, next, (size_t)(end - next)));
+        wb_text_append(svg, "%s-%zu", name, number_of_id(&list, next, (size_t)(end - next)));
         position = end;
     }
-    free(ids.starts);
-    free(ids.lengths);
+    free(list.ids);
 }
 
 /* The footer as an element of the file: Cairo draws texts as outlines, in which nobody finds where
