@@ -361,18 +361,14 @@ static enum wb_status draw_shapes(struct wb_figure **out, const struct wb_datase
 static enum wb_status write_figure(const struct wb_figure *figure, const char *folder,
                                    const char *name, bool with_pdf)
 {
+    static const char *const endings[] = {"svg", "png", "pdf"};
     char file[64], path[WB_PATH];
-    snprintf(file, sizeof file, "%s.svg", name);
-    WB_TRY(wb_file_join(path, folder, file));
-    WB_TRY(wb_figure_write_svg(figure, path));
-    snprintf(file, sizeof file, "%s.png", name);
-    WB_TRY(wb_file_join(path, folder, file));
-    WB_TRY(wb_figure_write_png(figure, PNG_SCALE, path));
-    if (!with_pdf)
-        return WB_OK;
-    snprintf(file, sizeof file, "%s.pdf", name);
-    WB_TRY(wb_file_join(path, folder, file));
-    return wb_figure_write_pdf(figure, NULL, path);
+    for (int i = 0; i < (with_pdf ? 3 : 2); i++) {
+        snprintf(file, sizeof file, "%s.%s", name, endings[i]);
+        WB_TRY(wb_file_join(path, folder, file));
+        WB_TRY(wb_figure_write_file(figure, PNG_SCALE, path));
+    }
+    return WB_OK;
 }
 
 static enum wb_status write_drawing(const struct wb_dataset *dataset, const char *folder,
