@@ -59,6 +59,7 @@ enum wb_status wb_card_curve_init(struct wb_card_curve *curve, const struct wb_c
         curve->high[k] = M * r.high;
         curve->candidates_low[k] = M * r.candidates_low;
         curve->candidates_high[k] = M * r.candidates_high;
+        curve->secant[k] = M / curve->curvature[k];
     }
     return WB_OK;
 }

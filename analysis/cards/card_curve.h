@@ -21,6 +21,7 @@ struct wb_card_curve {
     double low[WB_CARD_CURVE], high[WB_CARD_CURVE]; /* N m, interval of 95 %; NaN: unknown */
     /* N m, over the laws that the data do not exclude; NaN: unknown */
     double candidates_low[WB_CARD_CURVE], candidates_high[WB_CARD_CURVE];
+    double secant[WB_CARD_CURVE]; /* moment over curvature, N m2 */
 };
 
 /* Fails only if out of memory. */

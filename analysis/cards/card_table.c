@@ -1,6 +1,7 @@
 #include "analysis/cards/card_table.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,6 +28,26 @@ static enum wb_status find_residual_curvature_ratio(const struct wb_card_source 
                                &bending));
     residual_curvature_ratio->value = bending.residual_curvature_ratio;
     return WB_OK;
+}
+
+/* --- the curve --- */
+
+static const struct {
+    const char *key;
+    size_t offset; /* of the values in struct wb_card_curve */
+} columns[] = {
+    {"curvature_1_m", offsetof(struct wb_card_curve, curvature)},
+    {"moment_N_m", offsetof(struct wb_card_curve, moment)},
+    {"low_N_m", offsetof(struct wb_card_curve, low)},
+    {"high_N_m", offsetof(struct wb_card_curve, high)},
+    {"candidates_low_N_m", offsetof(struct wb_card_curve, candidates_low)},
+    {"candidates_high_N_m", offsetof(struct wb_card_curve, candidates_high)},
+    {"secant_flexural_rigidity_N_m2", offsetof(struct wb_card_curve, secant)},
+};
+
+static double cell(const struct wb_card_curve *curve, size_t column, int k)
+{
+    return ((const double *)((const char *)curve + columns[column].offset))[k];
 }
 
 /* --- JSON --- */
@@ -56,25 +77,11 @@ static void set_law(struct wb_json *object, const struct wb_law *law)
 static void set_curve(struct wb_json *object, const struct wb_card_curve *curve)
 {
     struct wb_json *const entry = wb_json_set_object(object, "moment_curvature");
-    const struct {
-        const char *key;
-        const double *values;
-    } columns[] = {
-        {"curvature_1_m", curve->curvature},
-        {"moment_N_m", curve->moment},
-        {"low_N_m", curve->low},
-        {"high_N_m", curve->high},
-        {"candidates_low_N_m", curve->candidates_low},
-        {"candidates_high_N_m", curve->candidates_high},
-    };
     for (size_t c = 0; c < WB_COUNT(columns); c++) {
         struct wb_json *const array = wb_json_set_array(entry, columns[c].key);
         for (int k = 0; k < WB_CARD_CURVE; k++)
-            wb_json_append_number(array, columns[c].values[k]);
+            wb_json_append_number(array, cell(curve, c, k));
     }
-    struct wb_json *const secant = wb_json_set_array(entry, "secant_flexural_rigidity_N_m2");
-    for (int k = 0; k < WB_CARD_CURVE; k++)
-        wb_json_append_number(secant, curve->moment[k] / curve->curvature[k]);
 }
 
 static void set_origin(struct wb_json *root, const struct wb_card_source *source)
@@ -149,12 +156,6 @@ enum wb_status wb_card_table_json(const struct wb_card_source *source,
 
 /* --- CSV --- */
 
-static void put_cell(struct wb_text *text, const char *before, double value)
-{
-    char number[WB_NUMBER_TEXT];
-    wb_text_append(text, "%s%s", before, isfinite(value) ? wb_number_format(value, number) : "");
-}
-
 enum wb_status wb_card_table_csv(const struct wb_card_source *source,
                                  const struct wb_card_settings *settings, struct wb_text *text,
                                  struct wb_reason *why)
@@ -170,16 +171,16 @@ enum wb_status wb_card_table_csv(const struct wb_card_source *source,
         "# Residual curvature ratio, residual over largest curvature: %.6g. Empty cells are not "
         "known.\n",
         residual_curvature_ratio.value);
-    wb_text_append(text, "curvature_1_m,moment_N_m,low_N_m,high_N_m,candidates_low_N_m,"
-                         "candidates_high_N_m,secant_flexural_rigidity_N_m2\n");
+    for (size_t c = 0; c < WB_COUNT(columns); c++)
+        wb_text_append(text, "%s%s", c > 0 ? "," : "", columns[c].key);
+    wb_text_append(text, "\n");
     for (int k = 0; k < WB_CARD_CURVE; k++) {
-        put_cell(text, "", curve.curvature[k]);
-        put_cell(text, ",", curve.moment[k]);
-        put_cell(text, ",", curve.low[k]);
-        put_cell(text, ",", curve.high[k]);
-        put_cell(text, ",", curve.candidates_low[k]);
-        put_cell(text, ",", curve.candidates_high[k]);
-        put_cell(text, ",", curve.moment[k] / curve.curvature[k]);
+        for (size_t c = 0; c < WB_COUNT(columns); c++) {
+            const double value = cell(&curve, c, k);
+            char number[WB_NUMBER_TEXT];
+            wb_text_append(text, "%s%s", c > 0 ? "," : "",
+                           isfinite(value) ? wb_number_format(value, number) : "");
+        }
         wb_text_append(text, "\n");
     }
     return WB_OK;
