@@ -118,14 +118,13 @@ static void find_area(struct wb_clock_report *report)
             report->area + report->area_per_delay * (report->interval[i] - report->expected);
 }
 
-enum wb_status wb_clock_report_make(struct wb_clock_report *report, const char *recording_path,
-                                    struct wb_reason *why)
+enum wb_status wb_clock_report_make(struct wb_clock_report *report, const char *recording_path)
 {
     struct wb_align_settings settings;
     struct wb_align_signals signals;
     memset(report, 0, sizeof *report);
     wb_align_default_settings(&settings);
-    WB_TRY(wb_align_run_signals(&report->dataset, &signals, recording_path, &settings, why));
+    WB_TRY(wb_align_run_signals(&report->dataset, &signals, recording_path, &settings, NULL));
     find_lag(report, &signals);
     wb_align_signals_release(&signals);
     find_area(report);

@@ -15,7 +15,6 @@
 
 #include "analysis/dataset/dataset.h"
 #include "base/json.h"
-#include "base/reason.h"
 #include "base/status.h"
 #include "base/text.h"
 
@@ -35,11 +34,10 @@ struct wb_clock_report {
     double area, area_per_delay, area_interval[2];
 };
 
-/* Aligns the recording with the default settings and fills the report. `why` as in wb_align_run().
+/* Aligns the recording with the default settings and fills the report. Failures are logged.
  * Release the report after a failure, too. */
 WB_MUST_CHECK enum wb_status wb_clock_report_make(struct wb_clock_report *report,
-                                                  const char *recording_path,
-                                                  struct wb_reason *why);
+                                                  const char *recording_path);
 void wb_clock_report_release(struct wb_clock_report *report); /* accepts a zeroed one */
 
 /* The report as text, and as members of a JSON object with units in the keys. */

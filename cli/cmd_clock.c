@@ -47,7 +47,7 @@ int wb_cmd_clock(int argc, char **argv)
     struct wb_clock_report report;
     wb_command_parse(&argp, argc, argv, &options);
     if (wb_file_kind_check(options.input, WB_FILE_BIT(WB_FILE_RECORDING)) != WB_OK ||
-        wb_clock_report_make(&report, options.input, NULL) != WB_OK)
+        wb_clock_report_make(&report, options.input) != WB_OK)
         return WB_EXIT_FAILED;
     print(&report, &options);
     const bool as_expected = report.identifiable && report.agrees;

@@ -45,7 +45,7 @@ static void make(void)
     snprintf(path, WB_PATH, "%s/clock-%d.wbr", folder, ++n_recordings);
     syn_record(&syn, path);
     wb_clock_report_release(&report);
-    if (wb_clock_report_make(&report, path, NULL) != WB_OK)
+    if (wb_clock_report_make(&report, path) != WB_OK)
         fail_msg("no report: %s", kept.last);
     unlink(path);
 }
