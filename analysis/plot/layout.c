@@ -332,7 +332,7 @@ int wb_layout_legend(const struct wb_layout_panel *panel, cairo_t *cairo,
             x += entry + 12.0;
         n++;
     }
-    *size = (struct wb_typeset_size){right + pad, n ? y + row + pad : 0.0, 0.0};
+    *size = (struct wb_typeset_size){right + pad, n ? y + row + pad : 0.0};
     return n;
 }
 

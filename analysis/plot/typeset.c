@@ -63,8 +63,7 @@ static struct wb_typeset_size size_of(PangoLayout *layout, const struct wb_types
     int width, height;
     pango_layout_get_size(layout, &width, &height);
     return (struct wb_typeset_size){style->width > 0.0 ? style->width : (double)width / PANGO_SCALE,
-                                    (double)height / PANGO_SCALE,
-                                    (double)pango_layout_get_baseline(layout) / PANGO_SCALE};
+                                    (double)height / PANGO_SCALE};
 }
 
 struct wb_typeset_size wb_typeset_measure(cairo_t *cairo, const char *markup,

@@ -29,7 +29,6 @@ struct wb_typeset_style {
 
 struct wb_typeset_size {
     double width, height; /* pt, of the whole text */
-    double baseline;      /* pt from the top to the first baseline */
 };
 
 /* The size that a text would take; draws nothing. */
