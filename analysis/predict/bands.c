@@ -7,6 +7,7 @@
 
 #include <gsl/gsl_statistics_double.h>
 
+#include "analysis/dataset/fit.h"
 #include "analysis/predict/hypercube.h"
 #include "base/memory.h"
 #include "base/progress.h"
@@ -22,15 +23,9 @@ enum {
     CURVE = 18       /* most points of a run's M over kappa */
 };
 
-static const double model_error = 0.02;
 static const double ninety = 1.6448536269514722; /* normal quantile of 95 % */
 static const double tail = 0.05;
 static const double reached = 0.95; /* part of the runs that must reach a place */
-
-double wb_bands_model_error(void)
-{
-    return model_error;
-}
 
 /* --- runs --- */
 
@@ -115,18 +110,12 @@ static bool count_run(void *context, int index, enum wb_status status)
 
 /* --- bands --- */
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
 /* Median and 90 % band of n numbers, which are sorted in place; without the model's error. */
 static struct wb_bands_interval find_band(double *numbers, int n)
 {
     const size_t size = (size_t)n;
     struct wb_bands_interval band;
-    qsort(numbers, size, sizeof *numbers, compare_numbers);
+    wb_fit_sort(numbers, size);
     band.median = gsl_stats_quantile_from_sorted_data(numbers, 1, size, 0.5);
     band.low = gsl_stats_quantile_from_sorted_data(numbers, 1, size, tail);
     band.high = gsl_stats_quantile_from_sorted_data(numbers, 1, size, 1.0 - tail);
@@ -135,7 +124,7 @@ static struct wb_bands_interval find_band(double *numbers, int n)
 
 static void widen(struct wb_bands_interval *band, double of)
 {
-    const double error = ninety * model_error * fabs(of);
+    const double error = ninety * WB_BANDS_MODEL_ERROR * fabs(of);
     band->wide_low = band->median - hypot(band->median - band->low, error);
     band->wide_high = band->median + hypot(band->high - band->median, error);
 }
@@ -186,7 +175,7 @@ static void find_moments(struct runs *runs, struct wb_bands_case *out)
 {
     for (int i = 0; i < runs->n; i++)
         runs->sorted[i] = runs->curve[i].curvature[runs->curve[i].n - 1];
-    qsort(runs->sorted, (size_t)runs->n, sizeof *runs->sorted, compare_numbers);
+    wb_fit_sort(runs->sorted, (size_t)runs->n);
     const double most = runs->sorted[(int)((1.0 - reached) * runs->n)];
     for (int k = 1; k <= WB_BANDS_MOMENTS && most > 0.0; k++) {
         const double curvature = most * k / WB_BANDS_MOMENTS;

@@ -31,6 +31,9 @@ enum {
     WB_BANDS_RANKINGS = 3
 };
 
+/* Standard deviation of the model from the explicit one, as a part of the largest value. */
+#define WB_BANDS_MODEL_ERROR 0.02
+
 struct wb_bands_interval {
     double median, low, high;   /* of the runs: median, 5 and 95 % */
     double wide_low, wide_high; /* with the model's error */
@@ -90,8 +93,5 @@ struct wb_bands {
 WB_MUST_CHECK enum wb_status wb_bands_create(struct wb_bands **out, const char *path,
                                              const struct wb_bands_settings *settings);
 void wb_bands_destroy(struct wb_bands *bands); /* accepts NULL */
-
-/* Standard deviation of the model from the explicit one, as a part of the largest value: 0.02. */
-double wb_bands_model_error(void);
 
 #endif

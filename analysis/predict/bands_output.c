@@ -298,7 +298,7 @@ void wb_bands_output_describe(const struct wb_bands *bands, struct wb_json *obje
 {
     struct wb_json *const member = wb_json_set_object(object, "uncertainty");
     wb_json_set_number(member, "confidence", 0.9);
-    wb_json_set_number(member, "model_error", wb_bands_model_error());
+    wb_json_set_number(member, "model_error", WB_BANDS_MODEL_ERROR);
     WB_PUT(member, &wb_bands_output_keys, struct wb_bands, bands);
     struct wb_json *const wires = wb_json_set_array(member, "laws_of_wires");
     for (int i = 0; i < bands->inputs.n_types; i++)
@@ -355,7 +355,7 @@ void wb_bands_output_summarise(const struct wb_bands *bands, struct wb_text *tex
         name_width = length > name_width ? length : name_width;
     }
     wb_text_append(text, "90 %% bands of %d runs a case, with the model's %g %%\n\n", bands->runs,
-                   wb_bands_model_error() / WB_PERCENT);
+                   WB_BANDS_MODEL_ERROR / WB_PERCENT);
     wb_text_append(text,
                    "%-*s%68s%-24s%s\n%-*s wires packing   layers outline     mm  %-28s%-24s%s\n",
                    name_width, "", "", "springback of the", "residual curvature", name_width,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/dataset/fit.h"
 #include "base/memory.h"
 #include "base/random.h"
 
@@ -147,15 +148,9 @@ static bool group_varies(const struct work *work, int group)
     return false;
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
 static void find_interval(double *values, double *low, double *high)
 {
-    qsort(values, RESAMPLES, sizeof *values, compare_numbers);
+    wb_fit_sort(values, RESAMPLES);
     *low = values[(int)(tail * RESAMPLES)];
     *high = values[(int)((1.0 - tail) * RESAMPLES) - 1];
 }

@@ -245,7 +245,7 @@ static void put_found(struct wb_document *document, const struct wb_predictions_
                  "In brackets: bands of 90 %%, in which one further bundle lies with that "
                  "probability if the files state all that is uncertain. They include %g %% for the "
                  "error of the section model.",
-                 wb_bands_model_error() / WB_PERCENT);
+                 WB_BANDS_MODEL_ERROR / WB_PERCENT);
     if (!any_test)
         wb_found_say(&found, WB_FOUND_NEXT,
                      "<b>Test</b>: bend one such bundle and name its dataset under <tt>tests</tt> "
@@ -286,7 +286,7 @@ static void put_cases(struct wb_document *document, const struct wb_bands *bands
         "one applies. Springback of the deflection: 1 less the residual deflection at zero "
         "force over the largest deflection. Residual curvature ratio: largest curvature along the "
         "bundle at zero force over that at the largest deflection.",
-        bands->runs, wb_bands_model_error() / WB_PERCENT);
+        bands->runs, WB_BANDS_MODEL_ERROR / WB_PERCENT);
     struct wb_document_table *const table =
         wb_pages_start_table(document, &caption, (int)WB_COUNT(columns), columns);
     for (int i = 0; i < bands->n_cases; i++) {
