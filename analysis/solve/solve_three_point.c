@@ -120,10 +120,7 @@ static struct wb_band known(double value)
     return (struct wb_band){true, value, value, value};
 }
 
-static struct wb_band unknown(void)
-{
-    return (struct wb_band){false, (double)NAN, (double)NAN, (double)NAN};
-}
+static const struct wb_band unknown = {false, (double)NAN, (double)NAN, (double)NAN};
 
 static void fill(const void *context, struct wb_dataset *dataset)
 {
@@ -142,7 +139,7 @@ static void fill(const void *context, struct wb_dataset *dataset)
         .machine = {.name = "computed",
                     .kind = WB_TEST_THREE_POINT,
                     .compliance = known(o->compliance),
-                    .speed = unknown(),
+                    .speed = unknown,
                     .span = o->span,
                     .roller_radius = o->roller_radius,
                     .nose_radius = known(o->nose_radius),
@@ -150,7 +147,7 @@ static void fill(const void *context, struct wb_dataset *dataset)
         .piece = {.outer_diameter = run->wire.outer_diameter,
                   .length = o->span + 2.0 * overhang,
                   .mass_per_length = wb_wire_mass_per_length(&run->wire),
-                  .usable_travel = unknown(),
+                  .usable_travel = unknown,
                   .natural_bow = known(o->bow),
                   .area = (double)NAN},
     };
