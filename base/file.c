@@ -169,23 +169,23 @@ enum wb_status wb_file_make_folder(const char *path)
     return WB_OK;
 }
 
-static bool folder_is_empty(const char *path)
+int wb_file_count_entries(const char *path)
 {
     DIR *folder = opendir(path);
     if (!folder)
-        return true;
-    int entries = 0;
-    while (entries < 3 && readdir(folder))
+        return -1;
+    int entries = -2; /* "." and ".." */
+    while (readdir(folder))
         entries++;
     closedir(folder);
-    return entries <= 2; /* "." and ".." */
+    return entries;
 }
 
 enum wb_status wb_file_prepare_output(const char *path, bool force)
 {
     if (!force && wb_file_exists(path) && !wb_file_is_folder(path))
         return wb_fail(WB_ERR_EXISTS, "'%s' exists and is not a folder", path);
-    if (!force && !folder_is_empty(path))
+    if (!force && wb_file_count_entries(path) > 0)
         return wb_fail(WB_ERR_EXISTS,
                        "folder '%s' is not empty; use another folder, or --force to overwrite",
                        path);

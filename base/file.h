@@ -30,6 +30,9 @@ WB_MUST_CHECK enum wb_status wb_file_write_text(const char *path, const struct w
 bool wb_file_exists(const char *path);
 bool wb_file_is_folder(const char *path);
 
+/* Number of a folder's entries, without "." and ".."; -1 if it cannot be opened. */
+int wb_file_count_entries(const char *path);
+
 /* Creates a folder and its parents; an existing folder is not an error. */
 WB_MUST_CHECK enum wb_status wb_file_make_folder(const char *path);
 

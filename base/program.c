@@ -8,7 +8,6 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/file.h"
@@ -31,12 +30,6 @@ static bool find_program(char path[WB_PATH], const char *name)
     return false;
 }
 
-static void pause_ms(int ms)
-{
-    const struct timespec time = {.tv_sec = 0, .tv_nsec = ms * 1000000L};
-    nanosleep(&time, NULL);
-}
-
 /* Waits for the process; its exit code goes to *code. False if it had to be killed. */
 static bool wait_for(pid_t child, double timeout, int *code)
 {
@@ -51,7 +44,7 @@ static bool wait_for(pid_t child, double timeout, int *code)
             kill(-child, SIGKILL);
             killed = true;
         }
-        pause_ms(ms);
+        wb_time_sleep(wb_time_now_ns() + ms * WB_NS_PER_MS);
         ms = ms < 50 ? 2 * ms : 50;
     }
     *code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);

@@ -43,7 +43,7 @@ static enum wb_status run(struct wb_jobs_plan *plan)
     if (plan->options->where == WB_JOBS_SLURM)
         status = wb_jobs_slurm_run(plan);
     else
-        status = wb_jobs_local_run(plan);
+        wb_jobs_local_run(plan);
     wb_jobs_plan_clear(plan);
     return status;
 }

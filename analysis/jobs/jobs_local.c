@@ -9,7 +9,6 @@
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/interrupt.h"
@@ -18,10 +17,8 @@
 
 #define WB_LOG_DOMAIN "jobs"
 
-enum {
-    LOOK_MS = 50,           /* between checks of the children */
-    PATIENCE_MS = 10 * 1000 /* time for a child to end after SIGTERM */
-};
+#define LOOK_NS (WB_NS_PER_S / 20)     /* between checks of the children */
+#define PATIENCE_NS (10 * WB_NS_PER_S) /* time for a child to end after SIGTERM */
 
 /* Runs at once: as requested, else the cores available to this process over the cores of a run. */
 static int count_workers(const struct wb_jobs_plan *plan)
@@ -154,12 +151,6 @@ static int collect_ended(struct wb_jobs_plan *plan)
     return running;
 }
 
-static void pause_ms(int ms)
-{
-    const struct timespec time = {.tv_sec = ms / 1000, .tv_nsec = (ms % 1000) * 1000000L};
-    nanosleep(&time, NULL); /* returns early on a signal */
-}
-
 static void signal_all(const struct wb_jobs_plan *plan, int signal_number)
 {
     for (int i = 0; i < plan->n; i++)
@@ -193,7 +184,7 @@ static int discard_interrupted(struct wb_jobs_plan *plan)
 
 static void end_all(struct wb_jobs_plan *plan)
 {
-    const int64_t until_ns = wb_time_now_ns() + PATIENCE_MS * WB_NS_PER_MS;
+    const int64_t until_ns = wb_time_now_ns() + PATIENCE_NS;
     bool killed = false;
     signal_all(plan, SIGTERM);
     while (discard_interrupted(plan) > 0) {
@@ -201,7 +192,7 @@ static void end_all(struct wb_jobs_plan *plan)
             signal_all(plan, SIGKILL);
             killed = true;
         }
-        pause_ms(LOOK_MS);
+        wb_time_sleep(wb_time_now_ns() + LOOK_NS);
     }
 }
 
@@ -231,16 +222,15 @@ static void run_all(struct wb_jobs_plan *plan)
             wb_jobs_plan_draw(plan, workers, NULL);
             drawn_ns = wb_time_now_ns();
         }
-        pause_ms(LOOK_MS);
+        wb_time_sleep(wb_time_now_ns() + LOOK_NS);
     }
 }
 
-enum wb_status wb_jobs_local_run(struct wb_jobs_plan *plan)
+void wb_jobs_local_run(struct wb_jobs_plan *plan)
 {
     signal(SIGCHLD,
            SIG_DFL); /* callers may ignore it, which would hide the exit status of children */
     run_all(plan);
     if (wb_interrupted())
         end_all(plan);
-    return WB_OK;
 }

@@ -6,6 +6,6 @@
 
 /* Runs the items that are to do and not queued in Slurm, and waits. On an interrupt all children
  * are ended and their incomplete outputs removed. */
-WB_MUST_CHECK enum wb_status wb_jobs_local_run(struct wb_jobs_plan *plan);
+void wb_jobs_local_run(struct wb_jobs_plan *plan);
 
 #endif

@@ -1,6 +1,5 @@
 #include "analysis/jobs/jobs_plan.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <ftw.h>
 #include <stdio.h>
@@ -201,21 +200,10 @@ bool wb_jobs_plan_is_made(const struct wb_jobs_plan_item *item)
     return !item->was_there || now.st_dev != item->old_device || now.st_ino != item->old_inode;
 }
 
-static bool is_empty_folder(const char *path)
-{
-    DIR *const listing = opendir(path);
-    if (!listing)
-        return false;
-    bool empty = true;
-    for (const struct dirent *entry; empty && (entry = readdir(listing));)
-        empty = strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0;
-    closedir(listing);
-    return empty;
-}
-
 bool wb_jobs_plan_is_blocked(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item)
 {
-    if (item->job->replace || !wb_file_exists(item->output) || is_empty_folder(item->output))
+    if (item->job->replace || !wb_file_exists(item->output) ||
+        wb_file_count_entries(item->output) == 0)
         return false;
     wb_jobs_plan_clear(plan);
     item->state = WB_JOBS_PLAN_FAILED;

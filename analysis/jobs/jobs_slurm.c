@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "analysis/jobs/jobs_array.h"
@@ -199,9 +198,9 @@ static void report_events(struct wb_jobs_plan *plan, struct waiting *waiting,
 static void wait_interruptibly(double seconds)
 {
     const int64_t until_ns = wb_time_now_ns() + wb_ns_from_seconds(seconds);
-    for (int64_t left_ns; !wb_interrupted() && (left_ns = until_ns - wb_time_now_ns()) > 0;) {
-        const int64_t part_ns = left_ns < WB_NS_PER_S / 4 ? left_ns : WB_NS_PER_S / 4;
-        nanosleep(&(struct timespec){.tv_nsec = (long)part_ns}, NULL);
+    for (int64_t now_ns; !wb_interrupted() && (now_ns = wb_time_now_ns()) < until_ns;) {
+        const int64_t part_ns = now_ns + WB_NS_PER_S / 4;
+        wb_time_sleep(part_ns < until_ns ? part_ns : until_ns);
     }
 }
 
