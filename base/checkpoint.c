@@ -38,14 +38,6 @@ void wb_checkpoint_release(struct wb_checkpoint *checkpoint)
     wb_checkpoint_init(checkpoint);
 }
 
-static void make_room(struct wb_checkpoint *c, size_t size)
-{
-    if (size <= c->room - c->at)
-        return;
-    c->room = 2 * (c->at + size) + 1024;
-    c->bytes = wb_memory_resize(c->bytes, c->room, 1);
-}
-
 /* --- groups --- */
 
 void wb_checkpoint_enter(struct wb_checkpoint *c, const char *format, ...)
@@ -83,7 +75,7 @@ void wb_checkpoint_append(struct wb_checkpoint *c, const void *fields, size_t si
 {
     if (c->status != WB_OK || size == 0)
         return;
-    make_room(c, size);
+    c->bytes = wb_memory_room(c->bytes, &c->room, c->at + size, 1);
     memcpy(c->bytes + c->at, fields, size);
     c->at += size;
     c->size = c->at;

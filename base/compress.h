@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "base/reason.h"
+#include "base/status.h"
 
 /* Compression levels of zstd. */
 enum wb_compress_level {
@@ -13,10 +13,9 @@ enum wb_compress_level {
 };
 
 /* Compresses `size` bytes into an allocated buffer (caller frees), with a checksum; the result
- * depends only on the bytes and the zstd release. `name` is for messages, which go to `why`, or to
- * the log if it is NULL. */
+ * depends only on the bytes and the zstd release. `name` is for messages. */
 WB_MUST_CHECK enum wb_status wb_compress(const void *bytes, size_t size,
                                          enum wb_compress_level level, const char *name,
-                                         void **packed, size_t *packed_size, struct wb_reason *why);
+                                         void **packed, size_t *packed_size);
 
 #endif

@@ -15,7 +15,7 @@ static inline enum wb_status compress_recording(const char *path, const char *ta
     size_t size, packed_size;
     WB_TRY(wb_file_read(path, &bytes, &size));
     enum wb_status status =
-        wb_compress(bytes, size, WB_COMPRESS_STORED, path, &packed, &packed_size, NULL);
+        wb_compress(bytes, size, WB_COMPRESS_STORED, path, &packed, &packed_size);
     if (status == WB_OK)
         status = wb_file_write(target, packed, packed_size);
     free(packed);

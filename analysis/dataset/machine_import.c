@@ -400,7 +400,7 @@ static enum wb_status write_original(const void *bytes, size_t size, const char 
     size_t packed_size;
     void *packed;
     WB_TRY(wb_file_join(target, folder, "original.zst"));
-    WB_TRY(wb_compress(bytes, size, WB_COMPRESS_QUICK, target, &packed, &packed_size, NULL));
+    WB_TRY(wb_compress(bytes, size, WB_COMPRESS_QUICK, target, &packed, &packed_size));
     const enum wb_status status = wb_file_write(target, packed, packed_size);
     free(packed);
     return status;
