@@ -18,7 +18,7 @@ enum {
 static const double last_strain = 0.1, overlay_poisson = 0.49, largest_poisson = 0.499;
 
 struct dialect {
-    const char *kind, *density, *elastic, *plastic;
+    const char *kind, *elastic, *plastic;
     bool has_combined;  /* the program has combined hardening with saturating back stresses */
     const char *advice; /* on elements, after the common one */
 };
@@ -133,7 +133,7 @@ static void put_material(struct wb_text *text, const struct dialect *dialect,
     /* CalculiX reads at most 20 characters of a number. */
     wb_text_append(text, "*MATERIAL, NAME=%s\n", m->name);
     if (m->density > 0.0)
-        wb_text_append(text, "%s\n%.8e\n", dialect->density, m->density);
+        wb_text_append(text, "*DENSITY\n%.8e\n", m->density);
     wb_text_append(text, "%s\n%.10e, %.6f\n", dialect->elastic, m->modulus, m->poisson);
     if (m->table->n > 0)
         wb_text_append(text, "%s\n", dialect->plastic);
@@ -285,7 +285,6 @@ enum wb_status wb_card_solid_calculix(const struct wb_card_source *source,
 {
     static const struct dialect dialect = {
         .kind = "CalculiX card",
-        .density = "*DENSITY",
         .elastic = "*ELASTIC",
         .plastic = "*PLASTIC",
         .advice = "Elements: C3D20R. Include with *INCLUDE, INPUT=FILE; the density is in kg/m3.",
@@ -300,7 +299,6 @@ enum wb_status wb_card_solid_abaqus(const struct wb_card_source *source,
 {
     static const struct dialect dialect = {
         .kind = "Abaqus card (NOT RUN: written from the manual's keywords and never run in Abaqus)",
-        .density = "*DENSITY",
         .elastic = "*ELASTIC, TYPE=ISOTROPIC",
         .plastic = "*PLASTIC, HARDENING=ISOTROPIC",
         .has_combined = true,

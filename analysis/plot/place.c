@@ -130,30 +130,25 @@ static bool is_free(const struct wb_place *place, const int *sums, const struct 
            0;
 }
 
+static int larger_of(int a, int b)
+{
+    return a > b ? a : b;
+}
+
 /* How many cells a window in a corner can grow on all sides before it meets data. */
 static int clearance(const struct wb_place *place, const int *sums, const struct window *window)
 {
-    int growth = 0;
-    for (;;) {
-        struct window larger = {window->row - growth, window->column - growth,
-                                window->rows + 2 * growth, window->columns + 2 * growth};
-        if (larger.row < 0) {
-            larger.rows += larger.row;
-            larger.row = 0;
-        }
-        if (larger.column < 0) {
-            larger.columns += larger.column;
-            larger.column = 0;
-        }
-        if (larger.row + larger.rows > place->rows)
-            larger.rows = place->rows - larger.row;
-        if (larger.column + larger.columns > place->columns)
-            larger.columns = place->columns - larger.column;
+    for (int growth = 0;; growth++) {
+        const int top = larger_of(0, window->row - growth);
+        const int left = larger_of(0, window->column - growth);
+        const int below = larger_of(0, place->rows - window->row - window->rows - growth);
+        const int beside = larger_of(0, place->columns - window->column - window->columns - growth);
+        const struct window larger = {top, left, place->rows - top - below,
+                                      place->columns - left - beside};
         if (!is_free(place, sums, &larger))
             return growth;
         if (larger.rows == place->rows && larger.columns == place->columns)
             return growth;
-        growth++;
     }
 }
 
