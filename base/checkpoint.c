@@ -107,30 +107,24 @@ static void pass(struct wb_checkpoint *c, const struct field *field)
     c->at = (size_t)(field->data - c->bytes) + field->size;
 }
 
-static void restore(struct wb_checkpoint *c, const char *name, void *data, size_t size)
+static enum wb_status restore(struct wb_checkpoint *c, const char *name, void *data, size_t size)
 {
     struct field field;
 
-    if (!find_field(c, &field)) {
-        c->status = wb_fail(WB_ERR_DATA,
-                            "checkpoint: field '%s' is missing: the data end after "
-                            "%zu bytes",
-                            name, c->size);
-        return;
-    }
-    if (strcmp(field.name, name) != 0) {
-        c->status =
-            wb_fail(WB_ERR_DATA, "checkpoint: expected field '%s', found '%s'", name, field.name);
-        return;
-    }
-    if (field.size != size) {
-        c->status = wb_fail(WB_ERR_DATA, "checkpoint: field '%s' has %zu bytes: expected %zu", name,
-                            field.size, size);
-        return;
-    }
+    if (!find_field(c, &field))
+        return wb_fail(WB_ERR_DATA,
+                       "checkpoint: field '%s' is missing: the data end after %zu bytes", name,
+                       c->size);
+    if (strcmp(field.name, name) != 0)
+        return wb_fail(WB_ERR_DATA, "checkpoint: expected field '%s', found '%s'", name,
+                       field.name);
+    if (field.size != size)
+        return wb_fail(WB_ERR_DATA, "checkpoint: field '%s' has %zu bytes: expected %zu", name,
+                       field.size, size);
     if (size > 0)
         memcpy(data, field.data, size);
     pass(c, &field);
+    return WB_OK;
 }
 
 void wb_checkpoint_visit(struct wb_checkpoint *c, const char *name, void *data, size_t size)
@@ -148,7 +142,7 @@ void wb_checkpoint_visit(struct wb_checkpoint *c, const char *name, void *data, 
         return;
     }
     if (c->restores) {
-        restore(c, whole, data, size);
+        c->status = restore(c, whole, data, size);
         return;
     }
     wb_checkpoint_append(c, whole, (size_t)n + 1);
