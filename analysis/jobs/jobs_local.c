@@ -34,7 +34,7 @@ static int count_workers(const struct wb_jobs_plan *plan)
 /* --- one child --- */
 
 /* Opens the log; its first line is the equivalent command. */
-static int open_log(const struct wb_jobs_plan_item *item, const char *partial)
+static int open_log(const struct wb_jobs_plan_item *item)
 {
     struct wb_text line = {0};
     const int log = open(item->log, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
@@ -46,7 +46,7 @@ static int open_log(const struct wb_jobs_plan_item *item, const char *partial)
         wb_text_append_quoted(&line, *word);
     }
     wb_text_append(&line, " -o ");
-    wb_text_append_quoted(&line, partial);
+    wb_text_append_quoted(&line, item->partial);
     wb_text_append(&line, "\n");
     const ssize_t written = write(log, wb_text_string(&line), line.length);
     const bool whole = written == (ssize_t)line.length;
@@ -58,8 +58,8 @@ static int open_log(const struct wb_jobs_plan_item *item, const char *partial)
 }
 
 /* Executed in the child. */
-__attribute__((noreturn)) static void run_child(const struct wb_job *job, const char *partial,
-                                                int cores, pid_t parent, int log)
+__attribute__((noreturn)) static void run_child(const struct wb_jobs_plan_item *item, int cores,
+                                                pid_t parent, int log)
 {
     static const char lost[] = "cannot start the run\n";
     /* Its own process group: Ctrl-C reaches only this program, which ends its children in order. */
@@ -72,22 +72,20 @@ __attribute__((noreturn)) static void run_child(const struct wb_job *job, const 
     /* The child must not keep the parent's files open, above all its lock. */
     close_range(STDERR_FILENO + 1, ~0U, 0);
     wb_log_set_sink(NULL, NULL);
-    const int code = job->run(job->context, partial, cores);
+    const int code = item->job->run(item->job->context, item->partial, cores);
     fflush(stdout);
     _exit(code);
 }
 
 static enum wb_status start_child(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item)
 {
-    char partial[WB_PATH];
-    WB_TRY(wb_jobs_plan_partial(item, partial));
-    const int log = open_log(item, partial);
+    const int log = open_log(item);
     if (log < 0)
         return wb_fail(WB_ERR_IO, "cannot write '%s': %s", item->log, strerror(errno));
     fflush(NULL); /* otherwise both processes would write the buffered output */
     const pid_t parent = getpid(), child = fork();
     if (child == 0)
-        run_child(item->job, partial, plan->cores_per_job, parent, log);
+        run_child(item, plan->cores_per_job, parent, log);
     const int error = errno;
     close(log);
     if (child < 0)

@@ -123,12 +123,20 @@ static enum wb_status resolve(char path[WB_PATH], const char *directory, const c
     return status;
 }
 
+static enum wb_status with_ending(char path[WB_PATH], const char *output, const char *ending)
+{
+    if (snprintf(path, WB_PATH, "%s%s", output, ending) >= WB_PATH)
+        return wb_fail(WB_ERR_ARGUMENT, "'%s%s': the path is too long", output, ending);
+    return WB_OK;
+}
+
 static enum wb_status init_item(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item)
 {
     char name[256];
     snprintf(name, sizeof name, "%s.log", item->job->name);
     WB_TRY(wb_file_join(item->log, plan->folder, name));
     WB_TRY(resolve(item->output, plan->directory, item->job->output));
+    WB_TRY(with_ending(item->partial, item->output, ".partial"));
     note_old(item);
     if (wb_jobs_plan_is_made(item))
         item->state = WB_JOBS_PLAN_PRESENT;
@@ -212,22 +220,9 @@ bool wb_jobs_plan_is_blocked(struct wb_jobs_plan *plan, struct wb_jobs_plan_item
     return true;
 }
 
-static enum wb_status with_ending(char path[WB_PATH], const char *output, const char *ending)
-{
-    if (snprintf(path, WB_PATH, "%s%s", output, ending) >= WB_PATH)
-        return wb_fail(WB_ERR_ARGUMENT, "'%s%s': the path is too long", output, ending);
-    return WB_OK;
-}
-
-enum wb_status wb_jobs_plan_partial(const struct wb_jobs_plan_item *item, char path[WB_PATH])
-{
-    return with_ending(path, item->output, ".partial");
-}
-
 bool wb_jobs_plan_is_partial_whole(const struct wb_jobs_plan_item *item)
 {
-    char path[WB_PATH];
-    return wb_jobs_plan_partial(item, path) == WB_OK && has_dataset(path);
+    return has_dataset(item->partial);
 }
 
 static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *walk)
@@ -247,18 +242,15 @@ static void remove_folder(const char *path)
 
 bool wb_jobs_plan_clean(const struct wb_jobs_plan_item *item, bool keep_usable)
 {
-    char path[WB_PATH];
     if (keep_usable && wb_jobs_plan_is_partial_whole(item))
         return true;
-    if (wb_jobs_plan_partial(item, path) == WB_OK)
-        remove_folder(path);
+    remove_folder(item->partial);
     return false;
 }
 
 enum wb_status wb_jobs_plan_accept(const struct wb_jobs_plan_item *item)
 {
-    char partial[WB_PATH], outdated[WB_PATH];
-    WB_TRY(wb_jobs_plan_partial(item, partial));
+    char outdated[WB_PATH];
     WB_TRY(with_ending(outdated, item->output, ".outdated"));
     if (item->job->replace && wb_file_exists(item->output)) {
         remove_folder(outdated);
@@ -266,8 +258,8 @@ enum wb_status wb_jobs_plan_accept(const struct wb_jobs_plan_item *item)
             return wb_fail(WB_ERR_IO, "cannot rename the outdated '%s': %s", item->output,
                            strerror(errno));
     }
-    if (rename(partial, item->output) != 0)
-        return wb_fail(WB_ERR_IO, "cannot rename '%s' to '%s': %s", partial, item->output,
+    if (rename(item->partial, item->output) != 0)
+        return wb_fail(WB_ERR_IO, "cannot rename '%s' to '%s': %s", item->partial, item->output,
                        strerror(errno));
     if (item->job->replace)
         remove_folder(outdated);
@@ -318,7 +310,6 @@ static void append_tail(struct wb_text *text, const char *path)
 void wb_jobs_plan_fail(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item, const char *how,
                        const char *other_log)
 {
-    char partial[WB_PATH];
     struct wb_text text = {0};
     item->state = WB_JOBS_PLAN_FAILED;
     wb_jobs_plan_clear(plan);
@@ -328,8 +319,8 @@ void wb_jobs_plan_fail(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item
     wb_error("run '%s' failed: %s; see '%s'%s", item->job->name, how, item->log,
              wb_text_string(&text));
     wb_text_release(&text);
-    if (wb_jobs_plan_clean(item, true) && wb_jobs_plan_partial(item, partial) == WB_OK)
-        wb_info("the incomplete output of '%s' is in '%s'", item->job->name, partial);
+    if (wb_jobs_plan_clean(item, true))
+        wb_info("the incomplete output of '%s' is in '%s'", item->job->name, item->partial);
 }
 
 void wb_jobs_plan_duration(char text[32], double seconds)

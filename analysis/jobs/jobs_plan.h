@@ -25,7 +25,8 @@ struct wb_jobs_plan_item {
     const struct wb_job *job; /* borrowed */
     enum wb_jobs_plan_state state;
     char output[WB_PATH], log[WB_PATH]; /* absolute */
-    bool was_there; /* an outdated output existed, distinguished from the new one by: */
+    char partial[WB_PATH]; /* the folder that the run writes, beside its output: OUTPUT.partial */
+    bool was_there;        /* an outdated output existed, distinguished from the new one by: */
     dev_t old_device;
     ino_t old_inode;
     pid_t pid;                   /* of a local run */
@@ -64,11 +65,7 @@ bool wb_jobs_plan_is_made(const struct wb_jobs_plan_item *item);
  * if so, reports it and marks the run as failed. */
 bool wb_jobs_plan_is_blocked(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item);
 
-/* The folder that a run writes, beside its output: OUTPUT.partial. */
-WB_MUST_CHECK enum wb_status wb_jobs_plan_partial(const struct wb_jobs_plan_item *item,
-                                                  char path[WB_PATH]);
-
-/* Whether that folder has a dataset. */
+/* Whether the folder that the run writes has a dataset. */
 bool wb_jobs_plan_is_partial_whole(const struct wb_jobs_plan_item *item);
 
 /* Removes what an unfinished run left. With `keep_usable`, keeps a curve that was cut short (it has
