@@ -33,7 +33,7 @@ static void print(const struct wb_clock_report *report, const struct wb_command_
         wb_json_set_text(root, "recording", options->input);
         wb_clock_report_describe(report, root);
         wb_command_print_json(root);
-        return WB_EXIT_OK;
+        return;
     }
     wb_clock_report_format(report, &text);
     printf("%s%s\n%s", options->input, report->dataset.info.is_virtual ? " (virtual rig)" : "",

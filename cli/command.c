@@ -160,9 +160,7 @@ int wb_command_exit(enum wb_status status)
 
 void wb_command_print_json(struct wb_json *root)
 {
-    char *text;
-    if (wb_json_format(root, &text) != WB_OK)
-        exit(WB_EXIT_FAILED);
+    char *const text = wb_json_format(root);
     fputs(text, stdout);
     free(text);
     wb_json_destroy(root);

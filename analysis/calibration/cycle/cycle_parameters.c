@@ -128,8 +128,7 @@ static void relaxed_law_of(const struct wb_cycle_parameters *p, const double *fr
             wb_bending_material(exp(free[0]), p->poissons_ratio, exp(free[1]), exp(free[2]), n);
         wb_law_init_ludwik(law, &material);
         law->isotropic_share = share;
-        if (c->is_combined)
-            wb_law_init_combined(law, &material, share);
+        law->is_combined = c->is_combined;
         return;
     }
     if (c->form == WB_LAW_CHABOCHE) {
