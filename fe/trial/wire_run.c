@@ -34,8 +34,8 @@ enum wb_status wb_wire_run_init(struct wb_wire_run *run, const struct wb_wire_mo
     const size_t n = (size_t)n_shape;
     run->rows = wb_memory_new(rows, sizeof *run->rows);
     run->shape_s = wb_memory_new(n, sizeof *run->shape_s);
-    run->shape = wb_memory_new(rows * n, sizeof *run->shape);
-    run->axis = wb_memory_new(n, sizeof *run->axis);
+    run->shape = wb_memory_new((rows + 1) * n, sizeof *run->shape);
+    run->axis = run->shape + rows * n;
     run->capacity = (int)rows;
     run->n_shape = n_shape;
     for (int i = 0; i < n_shape; i++)
@@ -50,7 +50,6 @@ void wb_wire_run_release(struct wb_wire_run *run)
     free(run->rows);
     free(run->shape_s);
     free(run->shape);
-    free(run->axis);
     *run = (struct wb_wire_run){0};
 }
 

@@ -36,7 +36,7 @@ struct wb_wire_run {
     int n_shape;
     double *shape_s;                      /* (n_shape) m, reference arc lengths, owned */
     double (*shape)[3];                   /* (n_rows x n_shape), m, owned */
-    double (*axis)[3];                    /* (n_shape) m, workspace: shape of the next row, owned */
+    double (*axis)[3];                    /* (n_shape) m, workspace: shape of the next row */
     bool converged;                       /* false: the rows end early */
     bool stopped;                         /* by the observer */
     char problem[320];                    /* where and why it did not converge; "" otherwise */
