@@ -28,7 +28,7 @@ enum {
 _Static_assert(HISTORY_MAXWELL + 2 * WB_LAW_MOST_MAXWELL <= HISTORY_HEAD, "head of the history");
 
 /* Relative distance to the yield surface below which a fibre counts as elastic; see
- * fe/material/material.c. */
+ * tests/twin/material_stress.h. */
 static const double on_surface = 1e-12;
 /* Relative tolerance of the stress beyond the yield surface in a step of Chaboche's law. */
 static const double stress_tolerance = 1e-12;
