@@ -155,12 +155,8 @@ WB_MUST_CHECK enum wb_status wb_figure_pixels_png(const struct wb_figure_pixels 
                                                   struct wb_text *png);
 void wb_figure_pixels_release(struct wb_figure_pixels *pixels); /* accepts a zeroed one */
 
-/* The same into files, atomically. */
+/* An SVG file, written atomically. */
 WB_MUST_CHECK enum wb_status wb_figure_write_svg(const struct wb_figure *figure, const char *path);
-WB_MUST_CHECK enum wb_status wb_figure_write_png(const struct wb_figure *figure, double scale,
-                                                 const char *path);
-WB_MUST_CHECK enum wb_status wb_figure_write_pdf(const struct wb_figure *figure,
-                                                 const char *date_utc, const char *path);
 
 /* Whether a file's name ends in .svg, .png or .pdf, and the figure written as that ending says (PNG
  * where it is another one); a PDF has the fixed date. */

@@ -191,19 +191,6 @@ enum wb_status wb_figure_write_svg(const struct wb_figure *figure, const char *p
     return write_text(wb_figure_svg(figure, &text), &text, path);
 }
 
-enum wb_status wb_figure_write_png(const struct wb_figure *figure, double scale, const char *path)
-{
-    struct wb_text text = {0};
-    return write_text(wb_figure_png(figure, scale, &text), &text, path);
-}
-
-enum wb_status wb_figure_write_pdf(const struct wb_figure *figure, const char *date_utc,
-                                   const char *path)
-{
-    struct wb_text text = {0};
-    return write_text(wb_figure_pdf(figure, date_utc, &text), &text, path);
-}
-
 static bool ends_in(const char *path, const char *ending)
 {
     const size_t n = strlen(path), n_ending = strlen(ending);
@@ -217,9 +204,9 @@ bool wb_figure_is_file(const char *path)
 
 enum wb_status wb_figure_write_file(const struct wb_figure *figure, double scale, const char *path)
 {
-    if (ends_in(path, ".svg"))
-        return wb_figure_write_svg(figure, path);
-    if (ends_in(path, ".pdf"))
-        return wb_figure_write_pdf(figure, NULL, path);
-    return wb_figure_write_png(figure, scale, path);
+    struct wb_text text = {0};
+    const enum wb_status status = ends_in(path, ".svg")   ? wb_figure_svg(figure, &text)
+                                  : ends_in(path, ".pdf") ? wb_figure_pdf(figure, NULL, &text)
+                                                          : wb_figure_png(figure, scale, &text);
+    return write_text(status, &text, path);
 }

@@ -414,7 +414,7 @@ static void files_are_written_whole_and_a_missing_folder_is_an_error(void **stat
     assert_true(temporary_folder_make(folder));
     struct wb_figure *const figure = make_figure("file", 0);
     assert_int_equal(wb_file_join(path, folder, "a.png"), WB_OK);
-    assert_int_equal(wb_figure_write_png(figure, 1.0, path), WB_OK);
+    assert_int_equal(wb_figure_write_file(figure, 1.0, path), WB_OK);
     char *bytes;
     size_t size;
     assert_int_equal(wb_file_read(path, &bytes, &size), WB_OK);
