@@ -87,12 +87,12 @@ static void print_json(const struct wb_machine_compliance *c, const struct wb_te
     wb_json_set_number(root, "compliance_mm_N", c->value / WB_MM);
     wb_json_set_number(root, "low", c->low / WB_MM);
     wb_json_set_number(root, "high", c->high / WB_MM);
-    wb_json_set_boolean(root, "told", c->is_identifiable);
+    wb_json_set_boolean(root, "determined", c->is_identifiable);
     wb_json_set_boolean(root, "straight", c->is_straight);
     wb_json_set_boolean(root, "has_unloading", c->has_unloading);
     wb_json_set_boolean(root, "is_reversible", c->is_reversible);
-    wb_json_set_number(root, "way_back_mm_N", c->value_unloading / WB_MM);
-    wb_json_set_number(root, "left_mm", c->residual / WB_MM);
+    wb_json_set_number(root, "unloading_compliance_mm_N", c->value_unloading / WB_MM);
+    wb_json_set_number(root, "residual_travel_mm", c->residual / WB_MM);
     wb_json_set_number(root, "largest_travel_mm", c->most_travel / WB_MM);
     wb_json_set_number(root, "strain", c->strain);
     wb_json_set_number(root, "of_the_bar_mm_N", c->of_bar / WB_MM);

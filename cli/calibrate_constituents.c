@@ -151,9 +151,9 @@ static void print_json(const struct options *o, const struct table *table)
 {
     const double squared = WB_MM * WB_MM;
     struct wb_json *const root = wb_json_create();
-    wb_json_set_number(root, "bonded_rigidity_Nmm2",
+    wb_json_set_number(root, "bonded_rigidity_N_mm2",
                        wb_layers_rigidity(&o->layers, false) / squared);
-    wb_json_set_number(root, "sliding_rigidity_Nmm2",
+    wb_json_set_number(root, "sliding_rigidity_N_mm2",
                        wb_layers_rigidity(&o->layers, true) / squared);
     wb_json_set_number(root, "youngs_modulus_MPa",
                        wb_layers_rigidity(&o->layers, false) /

@@ -122,7 +122,7 @@ static void print_json(const struct wb_three_point_calibration *c,
         wb_json_set_number(item, "first_contact_error_mm", m->fit.first_contact_error / WB_MM);
         wb_json_set_number(item, "natural_bow_mm", m->fit.bow / WB_MM);
         wb_json_set_number(item, "natural_bow_error_mm", m->fit.bow_error / WB_MM);
-        wb_json_set_boolean(item, "natural_bow_told", m->fit.is_bow_identifiable);
+        wb_json_set_boolean(item, "natural_bow_determined", m->fit.is_bow_identifiable);
         wb_json_set_number(item, "natural_bow_off_prior", m->fit.bow_off);
         wb_json_set_number(item, "bow_contact_correlation", m->fit.bow_contact_correlation);
         wb_json_set_number(item, "usable_mm", m->data.usable / WB_MM);

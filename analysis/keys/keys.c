@@ -18,7 +18,6 @@ static const struct {
     {"_N_mm2", "N mm2", WB_NMM2},
     {"_N_mm3", "N/mm3", WB_N_PER_MM3},
     {"_N_mm", "N mm", WB_NMM},
-    {"_Nmm2", "N mm2", WB_NMM2},
     {"_Nmm", "N mm", WB_NMM},
     {"_Nm", "N m", 1.0},
     {"_mm_N", "mm/N", WB_MM},

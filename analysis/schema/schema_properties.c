@@ -118,7 +118,7 @@ static const struct wb_key test_rows[] = {
     {"natural_bow_mm", NUMBER | OPTIONAL, "natural bow"},
     {"natural_bow_error_mm", NUMBER | OPTIONAL,
      "its standard uncertainty; where the readings do not determine the bow, that of the file"},
-    {"natural_bow_told", FLAG | OPTIONAL, "the readings determine the natural bow"},
+    {"natural_bow_determined", FLAG | OPTIONAL, "the readings determine the natural bow"},
     {"usable_mm", NUMBER | OPTIONAL, "travel up to which the test is used"},
     {"usable_by", TEXT | OPTIONAL, "reason of that limit"},
     {"misfit", NUMBER | OPTIONAL, "RMS of the force residuals over F_max"},

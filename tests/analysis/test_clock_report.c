@@ -101,7 +101,7 @@ static void the_lag_is_found_with_a_dwell_at_the_turn(void **state)
 }
 
 /* With hardly any noise the measured lag is the truth's to a quarter of a frame, and what differs
- * from the rig file is told. */
+ * from the rig file is reported. */
 static void a_delay_missing_in_the_rig_file_is_reported(void **state)
 {
     (void)state;

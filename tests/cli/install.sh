@@ -1,5 +1,5 @@
 #!/bin/bash
-# What `meson install` puts into an empty place works from there: the version is told, shipped
+# What `meson install` puts into an empty place works from there: the version is printed, shipped
 # fixtures are found, the manual page is there. Usage: install.sh WIREBENCH BUILD_ROOT PREFIX
 set -eu
 . "$(dirname "$0")/wait.sh"

@@ -32,20 +32,20 @@ fit: {elements: 10, fibres: 12}
 YAML
 cd "$folder" || exit 1
 
-# Without datasets all is written, and everybody is told how to make them.
+# Without datasets the report is written, and says how to make them.
 run 3 c.yaml -o r
 for file in report.pdf report.html report.json figures/sections-1.svg; do
     [ -s "r/$file" ] || fail "no $file"
 done
 grep -qF 'wirebench solve bundle one.yaml --dead-force --no-weight --friction 0.2 --duration-s 1.5 -o sim/one-0.2' out ||
-    fail 'it is not told how to make a dataset'
+    fail 'how to make a dataset is missing'
 grep -q '0 of 3 datasets used' out || fail 'datasets come from nowhere'
 
-# The command that is told makes it, in the campaign's folder.
+# The printed command makes it, in the campaign's folder.
 # shellcheck disable=SC2016 # $wirebench is expanded by eval
 eval "$(sed -n 's/^ *wirebench \(solve cantilever .*\)/"$wirebench" \1/p' out)" 2>/dev/null
 run 3 c.yaml -o r --force
-grep -q '1 of 3 datasets used' out || fail 'the told command did not make the dataset'
+grep -q '1 of 3 datasets used' out || fail 'the printed command did not make the dataset'
 
 # An array that is only written, and no report.
 run 0 c.yaml -o dry --slurm-dry-run --cores-per-run 2
@@ -62,9 +62,9 @@ rms=$(sed -n 's/^one wire .* published curve \([0-9.]*\) .*/\1/p' out)
 awk -v rms="$rms" 'BEGIN { exit !(rms > 0 && rms < 0.02) }' ||
     fail "one wire is $rms from its own beam"
 
-# Then an array has no runs: that is told, and there is no report either.
+# Then an array has no runs: a message says so, and no report is written.
 run 0 c.yaml -o dry --slurm-dry-run
-grep -q 'there are no runs to list' err || fail 'it is not told that there are no runs'
+grep -q 'there are no runs to list' err || fail 'no message that there are no runs'
 [ -e dry ] && fail 'a dry run without runs wrote a report'
 
 before=$(sha256sum sim/*/dataset.json)
@@ -87,21 +87,21 @@ cp sim/one-1d/dataset.json kept.json
 sed -i 's/"version": 1,/"version": 0,/' sim/one-1d/dataset.json
 run 3 c.yaml --stale
 grep -q '^1 of 3 datasets' out || fail 'an older solver is not listed'
-grep -q 'sim/one-1d: version is 0 in it, and 1 is wanted' out || fail 'the older solver is not told'
+grep -q 'sim/one-1d: version is 0 in it, and 1 is wanted' out || fail 'the older solver is not named'
 [ -s err ] && fail "what is listed is warned of, too: $(cat err)"
 run 3 c.yaml --stale --json
 grep -q '"problem": "version is 0 in it, and 1 is wanted"' out || fail 'the list is no JSON'
 cp kept.json sim/one-1d/dataset.json
 run 2 c.yaml --stale --solve
 run 2 c.yaml
-grep -q -e '--stale' err || fail 'without a folder nobody is told of --stale'
+grep -q -e '--stale' err || fail 'without a folder --stale is not named'
 
 # A comment changes nothing. Another friction: the dataset is outdated, left out, and replaced.
 echo '# a comment' >>one.yaml
 run 0 c.yaml -o r --force
 sed -i 's/friction: 0.2/friction: 0.3/' c.yaml
 run 3 c.yaml -o r --force
-grep -q 'interface.friction.static is 0.2 in it, and 0.3 is wanted' out || fail 'outdated datasets are not told'
+grep -q 'interface.friction.static is 0.2 in it, and 0.3 is wanted' out || fail 'outdated datasets are not named'
 first=$(sha256sum sim/one/dataset.json)
 run 0 c.yaml -o r --force --solve
 grep -q '"static": 0.3' sim/one-0.2/dataset.json || fail 'the outdated dataset was not replaced'
@@ -114,8 +114,8 @@ YAML
 sed -i 's/^  - {name: one-0.2.*/&\n  - {name: lost, bundle: .\/one.yaml, mass_scaling: 1e6, duration_s: 1e-3}/' c.yaml
 run 3 c.yaml -o r --force --solve
 grep -q 'lost' err || fail 'the failed run is not named'
-grep -q 'sim/lost: there is no such dataset' out || fail 'the missing dataset is not told'
-grep -q 'limit kinetic_max exceeded by one' out || fail 'the exceeded limit is not told'
+grep -q 'sim/lost: there is no such dataset' out || fail 'the missing dataset is not named'
+grep -q 'limit kinetic_max exceeded by one' out || fail 'the exceeded limit is not named'
 sed -i '/name: lost/d' c.yaml
 run 4 c.yaml -o r --force
 

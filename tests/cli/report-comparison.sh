@@ -19,13 +19,13 @@ run 1 "$folder/novel.yaml" -o "$folder/r"
 grep -q 'novel.yaml:1: kind' "$folder/err" || fail 'an unknown kind is not named with its line'
 [ -e "$folder/r" ] && fail 'a bad campaign made a folder'
 
-# Without datasets all is written, and everybody is told how to make them.
+# Without datasets the report is written, and says how to make them.
 run 3 "$folder/c.yaml" -o "$folder/r"
 for file in report.pdf report.html report.json; do
     [ -s "$folder/r/$file" ] || fail "no $file"
 done
 grep -qF 'wirebench solve wire3d fixtures/models/follower-8awg.yaml -o sim/follower-8awg-3d' \
-    "$folder/out" || fail 'it is not told how to make a dataset'
+    "$folder/out" || fail 'how to make a dataset is missing'
 cp "$folder/out" "$folder/before"
 run 1 "$folder/c.yaml" -o "$folder/r"
 grep -q -- '--force' "$folder/err" || fail 'the message does not name --force'
@@ -42,7 +42,7 @@ for model in follower-8awg-elastic follower-8awg; do
 done
 run 0 "$folder/c.yaml" -o "$folder/r" --force
 grep -q '4 of 4 datasets used' "$folder/out" || fail 'not all datasets are used'
-grep -q 'fitted rod: yield stress' "$folder/out" || fail 'the fitted rod is not told'
+grep -q 'fitted rod: yield stress' "$folder/out" || fail 'the fitted rod is missing'
 run 0 "$folder/c.yaml" -o "$folder/again" --json
 cmp -s "$folder/r/report.json" "$folder/again/report.json" || fail 'another run gave other bytes'
 cmp -s "$folder/out" "$folder/again/report.json" || fail '--json does not print report.json'
@@ -53,15 +53,15 @@ grep -qiE "experiment|$folder" "$folder/r/report.html" "$folder/r/report.json" &
 # A rod that costs as much as a solid.
 (cat "$folder/c.yaml" && echo 'limits: {cost_max: 0.02}') >"$folder/strict.yaml"
 run 4 "$folder/strict.yaml" -o "$folder/strict"
-grep -q 'limit of the campaign is exceeded' "$folder/out" || fail 'the exceeded limit is not told'
+grep -q 'limit of the campaign is exceeded' "$folder/out" || fail 'the exceeded limit is missing'
 
 # A dataset of other inputs, and one of an older solver, are left out.
 sed -i 's/"poissons_ratio": 0.34/"poissons_ratio": 0.3/' "$folder/sim/follower-8awg-3d/dataset.json"
 run 3 "$folder/c.yaml" -o "$folder/r" --force
-told='parts[0].poissons_ratio is 0.3 in it, and 0.34 is wanted'
-grep -qF "$told" "$folder/out" || fail 'the other input is not told'
-grep -qF "$told" "$folder/r/report.html" || fail 'the report hides the other input'
-grep -q 'no fitted rod' "$folder/out" || fail 'the missing fit is not told'
+other='parts[0].poissons_ratio is 0.3 in it, and 0.34 is wanted'
+grep -qF "$other" "$folder/out" || fail 'the other input is missing'
+grep -qF "$other" "$folder/r/report.html" || fail 'the report hides the other input'
+grep -q 'no fitted rod' "$folder/out" || fail 'the missing fit is not named'
 
 # --solve makes what is missing: solids and rods of a coarse wire under a small force.
 for model in follower-8awg-elastic follower-8awg; do

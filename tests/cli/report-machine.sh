@@ -39,10 +39,10 @@ export WIREBENCH_TEST_DATA=$folder/data
 run 0 "$folder/c.yaml" -o "$folder/r"
 [ "$(number tests_used)" = 3 ] || fail "not all tests are used"
 # The first contact is taken where 1 mN is exceeded, up to a row late.
-awk -v v="$(number early_rigidity_Nmm2)" 'BEGIN { exit !(v > 29.9 && v < 32) }' ||
-    fail "E I is $(number early_rigidity_Nmm2)"
-awk -v v="$(number early_rigidity_deviation_Nmm2)" 'BEGIN { exit !(v > 0.9 && v < 1.1) }' ||
-    fail "s is $(number early_rigidity_deviation_Nmm2)"
+awk -v v="$(number early_rigidity_N_mm2)" 'BEGIN { exit !(v > 29.9 && v < 32) }' ||
+    fail "E I is $(number early_rigidity_N_mm2)"
+awk -v v="$(number early_rigidity_deviation_N_mm2)" 'BEGIN { exit !(v > 0.9 && v < 1.1) }' ||
+    fail "s is $(number early_rigidity_deviation_N_mm2)"
 [ -e "$folder/r/figures/group-1.svg" ] || fail "no figure"
 
 # Calibrated, the law has cards, which name the machine's files by their checksums.
@@ -64,7 +64,7 @@ run 3 "$folder/c.yaml" -o "$folder/r" --force
 
 echo nonsense >"$folder/data/test-2.txt"
 run 3 "$folder/c.yaml" -o "$folder/r" --force
-grep -q '"state": "refused"' "$folder/r/report.json" || fail "a refused file is not told"
+grep -q '"state": "refused"' "$folder/r/report.json" || fail "a refused file is missing"
 grep -q "$folder" "$folder/r/report.json" && fail "a path of this machine is in the report"
 
 unset WIREBENCH_TEST_DATA

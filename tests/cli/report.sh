@@ -30,9 +30,9 @@ grep -q 'bad.yaml:1: .*speed' "$folder/err" || fail 'an unknown key is not named
 run 3 "$folder/empty.yaml" -o "$folder/r"
 for file in report.pdf report.html report.json; do
     [ -s "$folder/r/$file" ] || fail "no $file"
-    grep -qF "$folder/r/$file" "$folder/out" || fail "$file is not told"
+    grep -qF "$folder/r/$file" "$folder/out" || fail "$file is not named"
 done
-grep -qF 'calibration missing' "$folder/out" || fail 'the missing calibration is not told'
+grep -qF 'calibration missing' "$folder/out" || fail 'the missing calibration is not named'
 [ "$(find "$folder/r" -name '.new*' | wc -l)" -eq 0 ] || fail 'something half-written is left'
 
 # A folder that holds something is left alone without --force, before anything is computed.
@@ -43,10 +43,10 @@ run 3 "$folder/empty.yaml" -o "$folder/r" --force --json
 cmp -s "$folder/before.json" "$folder/r/report.json" || fail 'the same campaign gave other bytes'
 cmp -s "$folder/out" "$folder/r/report.json" || fail '--json does not print report.json'
 
-# What was to be measured is not computed: that is told, and the report is written.
+# Measurements are not computed: a message says so, and the report is written.
 run 3 "$folder/empty.yaml" -o "$folder/solved" --solve
-grep -q 'recordings cannot be computed' "$folder/err" || fail 'it is not told what --solve leaves out'
-[ "$(grep -c 'cannot be computed' "$folder/err")" -eq 1 ] || fail 'it is told more than once'
+grep -q 'recordings cannot be computed' "$folder/err" || fail 'what --solve leaves out is not named'
+[ "$(grep -c 'cannot be computed' "$folder/err")" -eq 1 ] || fail 'the message comes more than once'
 cmp -s "$folder/before.json" "$folder/solved/report.json" || fail '--solve changed a report of recordings'
 [ -e "$folder/solved.jobs" ] && fail 'a campaign of recordings has runs'
 
@@ -58,11 +58,11 @@ calibration_length_mm: 85
 wires: [{wire: type1, calibration: [there.wbr]}]
 YAML
 run 3 "$folder/there.yaml" -o "$folder/there" --solve
-grep -q 'cannot be computed' "$folder/err" && fail 'recordings are told missing that are there'
+grep -q 'cannot be computed' "$folder/err" && fail 'existing recordings are called missing'
 
 # A dry run has nothing to list of recordings, and writes no report.
 run 0 "$folder/empty.yaml" -o "$folder/dry" --slurm-dry-run
-grep -q 'there are no runs to list' "$folder/err" || fail 'it is not told that there are no runs'
+grep -q 'there are no runs to list' "$folder/err" || fail 'no message that there are no runs'
 [ -e "$folder/dry" ] && fail 'a dry run wrote a report'
 
 # No place to write.

@@ -61,7 +61,7 @@ static void ctrl_c_stops_the_stage_and_a_release_frees_the_specimen(void **state
     run("record rig.yaml " SPECIMEN "-o refused.wbr --travel-mm 5");
     assert_code(1);
     assert_said("stage rig.yaml release'");
-    /* Without the cell's zero nobody is told that the specimen is free. */
+    /* Without the cell's zero the messages do not say that the specimen is free. */
     run("stage rig.yaml release");
     assert_code(3);
     assert_said("check the strand");

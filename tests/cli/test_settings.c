@@ -158,7 +158,7 @@ static void choose_values(const struct wb_setting *row, struct value values[VALU
     }
 }
 
-/* A list is told by its first member. */
+/* The first member identifies a list. */
 static const struct wb_setting *number_row(const struct wb_setting *row)
 {
     if (row->type == WB_SETTING_LIST)

@@ -121,8 +121,8 @@ struct shared {
     atomic_int_least64_t worst_ns;
 };
 
-/* Writes a byte to `told` whenever more chunks are on the disk. */
-static void record_until_killed(const char *path, struct shared *shared, int told)
+/* Writes a byte to `progress` whenever more chunks are on the disk. */
+static void record_until_killed(const char *path, struct shared *shared, int progress)
 {
     static int64_t pushed_ns[RING];
     struct wb_recording *recording = NULL;
@@ -135,7 +135,7 @@ static void record_until_killed(const char *path, struct shared *shared, int tol
     bench_fill(recording, 0);
     if (wb_writer_start(&writer, recording, &settings) != WB_OK)
         _exit(1);
-    int64_t safe = 0, told_safe = 0;
+    int64_t safe = 0, known_safe = 0;
     for (int64_t seq = 0;; seq++) {
         uint8_t bytes[300];
         struct wb_writer_state lag;
@@ -151,9 +151,9 @@ static void record_until_killed(const char *path, struct shared *shared, int tol
                lag.lag_ns > 0 && pushed_ns[(safe + 1) % RING] < now_ns - lag.lag_ns)
             safe++;
         atomic_store(&shared->safe, safe);
-        if (safe > told_safe && write(told, "", 1) != 1)
+        if (safe > known_safe && write(progress, "", 1) != 1)
             _exit(1);
-        told_safe = safe;
+        known_safe = safe;
         if (lag.lag_ns > atomic_load(&shared->worst_ns))
             atomic_store(&shared->worst_ns, lag.lag_ns);
         usleep(50); /* between two chunks, as instruments send them */
@@ -172,26 +172,26 @@ static void killed_recorders_leave_what_the_writer_called_safe(void **state)
     for (uint64_t i = 0; i < n_kills; i++) {
         struct wb_recording *recording = NULL;
         struct bench_tally tally;
-        int status, told[2];
+        int status, progress[2];
         char byte;
         atomic_store(&shared->pushed, 0);
         atomic_store(&shared->safe, 0);
         atomic_store(&shared->worst_ns, 0);
         fflush(NULL);
-        assert_int_equal(pipe(told), 0);
+        assert_int_equal(pipe(progress), 0);
         const pid_t child = fork();
         assert_true(child >= 0);
         if (child == 0)
-            record_until_killed(bench->path, shared, told[1]);
-        close(told[1]);
+            record_until_killed(bench->path, shared, progress[1]);
+        close(progress[1]);
         const int64_t wanted = 11 + (int64_t)random_below(100);
         while (atomic_load(&shared->safe) < wanted)
-            assert_int_equal(read(told[0], &byte, 1), 1);
+            assert_int_equal(read(progress[0], &byte, 1), 1);
         /* Not only right after a flush. */
         const int64_t more = atomic_load(&shared->pushed) + (int64_t)random_below(60);
         while (atomic_load(&shared->pushed) < more && waitpid(child, &status, WNOHANG) == 0)
             sched_yield();
-        close(told[0]);
+        close(progress[0]);
         assert_int_equal(kill(child, SIGKILL), 0);
         assert_int_equal(waitpid(child, &status, 0), child);
         assert_true(WIFSIGNALED(status));

@@ -288,7 +288,7 @@ figure() {
     grep -q 'id="force-deflection' "$folder/curve.svg" || fail 'figure: it is not the curve'
 }
 
-# What goes wrong before the test begins is told on the usual screen, behind the view's.
+# What goes wrong before the test begins is printed on the usual screen, behind the view's.
 refused() {
     local code
     sed 's|address: serial:.*|address: pty:/dev/pts/no-such|' "$folder/bench.yaml" >"$folder/refused.yaml"

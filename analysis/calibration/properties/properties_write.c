@@ -454,7 +454,7 @@ static void put_bench(struct wb_text *text, const struct wb_three_point_calibrat
         put_number(text, "      ", "first_contact_error_mm", m->fit.first_contact_error / WB_MM);
         put_number(text, "      ", "natural_bow_mm", m->fit.bow / WB_MM);
         put_number(text, "      ", "natural_bow_error_mm", m->fit.bow_error / WB_MM);
-        wb_text_append(text, "      natural_bow_told: %s\n",
+        wb_text_append(text, "      natural_bow_determined: %s\n",
                        m->fit.is_bow_identifiable ? "true" : "false");
         put_number(text, "      ", "usable_mm", m->data.usable / WB_MM);
         wb_text_append(text, "      usable_by: \"%s\"\n", wb_three_point_limit_name(m->data.limit));

@@ -255,7 +255,7 @@ static const struct wb_key machine_test_rows[] = {
     {"partial_rows", TEST(report.partial) | OPTIONAL, "rows left out because a value is missing"},
     {"largest_force_N", TEST(report.largest_force) | UNKNOWN | OPTIONAL, "largest force"},
     {"contact_mm", TEST(start) | UNKNOWN | OPTIONAL, "travel at the first contact"},
-    {"early_rigidity_Nmm2", TEST(rigidity) | UNKNOWN | OPTIONAL,
+    {"early_rigidity_N_mm2", TEST(rigidity) | UNKNOWN | OPTIONAL,
      "F L^3 / 48 d at d = 0.02 of the span from the first contact"},
 };
 static WB_KEYS(machine_test, "machine_test", "A test of a group.");
@@ -266,8 +266,9 @@ static const struct wb_key group_rows[] = {
     {"outer_diameter_mm", GROUP(piece.outer_diameter), "outer diameter"},
     {"zero_force_mN", GROUP(zero_force), "force that marks the first contact"},
     {"machine", OBJECT, "testing machine", &wb_common_machine_keys},
-    {"early_rigidity_Nmm2", MEAN(rigidity) | UNKNOWN, "mean of the tests' early rigidity"},
-    {"early_rigidity_deviation_Nmm2", MEAN(rigidity_deviation) | UNKNOWN, "its standard deviation"},
+    {"early_rigidity_N_mm2", MEAN(rigidity) | UNKNOWN, "mean of the tests' early rigidity"},
+    {"early_rigidity_deviation_N_mm2", MEAN(rigidity_deviation) | UNKNOWN,
+     "its standard deviation"},
     {"reach_mm", NUMBER | UNKNOWN | OPTIONAL, "deflection that all tests reach"},
     {"force_N", NUMBER | LIST | UNKNOWN | OPTIONAL,
      "mean force at even deflections from 0 to `reach_mm`"},

@@ -111,8 +111,8 @@ static int finish(void **state)
 }
 
 /* Exactly one remark of this severity holds the words; it is of that sample and names the wire. */
-static void assert_told(const struct bench *bench, enum wb_cycle_check_severity severity,
-                        int sample, const char *words)
+static void assert_remark(const struct bench *bench, enum wb_cycle_check_severity severity,
+                          int sample, const char *words)
 {
     int n = 0;
     for (int i = 0; i < bench->remarks.n; i++) {
@@ -144,7 +144,7 @@ static void assert_refused(struct bench *bench, const char *words)
 {
     struct wb_reason why = {.text = ""};
     check_rows(bench);
-    assert_told(bench, WB_CHECK_UNUSABLE, bench->list[0]->info.sample, words);
+    assert_remark(bench, WB_CHECK_UNUSABLE, bench->list[0]->info.sample, words);
     assert_int_equal(bench->remarks.n, 1);
     assert_int_equal(wb_cycle_check_refuse(&bench->remarks, &why), WB_ERR_DATA);
     assert_non_null(strstr(why.text, words));
@@ -251,7 +251,7 @@ static void another_length_is_found_without_markers(void **state)
     bench->datasets[0].info.length = 85.0 * WB_MM;
     forget_places(&bench->datasets[0]);
     check(bench);
-    assert_told(bench, WB_CHECK_DOUBT, 1, "length of about 100 mm");
+    assert_remark(bench, WB_CHECK_DOUBT, 1, "length of about 100 mm");
     release(bench);
 }
 
@@ -263,7 +263,7 @@ static void a_short_travel_gives_a_stiffness_alone(void **state)
         struct bench *const bench = calloc(1, sizeof *bench);
         add(bench, 2, 85.0 * WB_MM, travel[i], 1);
         check(bench);
-        assert_told(bench, WB_CHECK_DOUBT, 1, "a travel of 30 mm is enough");
+        assert_remark(bench, WB_CHECK_DOUBT, 1, "a travel of 30 mm is enough");
         assert_int_equal(count(bench, WB_CHECK_DOUBT), 1);
         assert_false(bench->calibration.is_strength_identifiable);
         release(bench);
@@ -283,7 +283,7 @@ static void a_wrong_zero_of_force_is_reported(void **state)
         struct bench *const bench = one(1);
         shift_tension(&bench->datasets[0], offsets[i]);
         check(bench);
-        assert_told(bench, WB_CHECK_DOUBT, 1, "the zero of force or the counterweight is wrong");
+        assert_remark(bench, WB_CHECK_DOUBT, 1, "the zero of force or the counterweight is wrong");
         assert_int_equal(count(bench, WB_CHECK_DOUBT), 1);
         release(bench);
     }
@@ -295,7 +295,7 @@ static void a_wrong_counterweight_is_reported(void **state)
     struct bench *const bench = one(1);
     bench->datasets[0].info.counterweight = 2.2e-3;
     check(bench);
-    assert_told(bench, WB_CHECK_DOUBT, 1, "the zero of force or the counterweight is wrong");
+    assert_remark(bench, WB_CHECK_DOUBT, 1, "the zero of force or the counterweight is wrong");
     release(bench);
 }
 
@@ -350,7 +350,7 @@ static void a_wrong_zero_of_deflection_is_reported(void **state)
         fast_rig_shift_deflection(&bench->datasets[0], cases[i].offset);
         bench->datasets[0].info.uncertainty.counterweight = cases[i].counterweight;
         check(bench);
-        assert_told(bench, WB_CHECK_DOUBT, 1, "the zero of deflection, or of force, is wrong");
+        assert_remark(bench, WB_CHECK_DOUBT, 1, "the zero of deflection, or of force, is wrong");
         release(bench);
     }
     dwell = 0.0;
@@ -380,8 +380,8 @@ static void a_small_common_counterweight_is_found_beside_another_doubt(void **st
     for (size_t i = 0; i < bench->datasets[0].n_rows; i += 20)
         hit_row(&bench->datasets[0].rows[i], i % 40 == 0 ? 1.0 : -1.0);
     check(bench);
-    assert_told(bench, WB_CHECK_DOUBT, 1, "rows were left out as outliers");
-    assert_told(bench, WB_CHECK_DOUBT, 0, "the zero of force or the counterweight is wrong");
+    assert_remark(bench, WB_CHECK_DOUBT, 1, "rows were left out as outliers");
+    assert_remark(bench, WB_CHECK_DOUBT, 0, "the zero of force or the counterweight is wrong");
     release(bench);
 }
 
@@ -391,7 +391,7 @@ static void a_lost_natural_shape_is_found_by_the_fit(void **state)
     struct bench *const bench = one(1);
     bench->datasets[0].info.n_natural_shape = 0;
     check(bench);
-    assert_told(bench, WB_CHECK_NOTE, 1, "has no natural shape; the fit found a bow of -2.4");
+    assert_remark(bench, WB_CHECK_NOTE, 1, "has no natural shape; the fit found a bow of -2.4");
     assert_no_doubt(bench);
     assert_close(bench->calibration.rigidity.value, good->calibration.rigidity.value,
                  0.005 * good->calibration.rigidity.value);
@@ -417,7 +417,7 @@ static void outliers_are_survived_and_counted(void **state)
         }
         check(bench);
         assert_no_doubt(bench);
-        assert_told(bench, WB_CHECK_NOTE, 1, "rows were left out as outliers");
+        assert_remark(bench, WB_CHECK_NOTE, 1, "rows were left out as outliers");
         assert_true(bench->calibration.members[0].data.n_outliers >
                     good->calibration.members[0].data.n_outliers);
         assert_close(bench->calibration.rigidity.value, good->calibration.rigidity.value,
@@ -436,7 +436,7 @@ static void many_outliers_are_doubted(void **state)
     for (size_t i = 10; i < bench->datasets[0].n_rows; i += 20)
         hit_row(&bench->datasets[0].rows[i], 1.0);
     check(bench);
-    assert_told(bench, WB_CHECK_DOUBT, 1, "rows were left out as outliers");
+    assert_remark(bench, WB_CHECK_DOUBT, 1, "rows were left out as outliers");
     release(bench);
 }
 
@@ -453,7 +453,7 @@ static void a_misfit_is_reported(void **state)
             hit_row(&dataset->rows[i], -10.0 * WB_MN);
     }
     check(bench);
-    assert_told(bench, WB_CHECK_DOUBT, 1, "the best law misses the force by");
+    assert_remark(bench, WB_CHECK_DOUBT, 1, "the best law misses the force by");
     release(bench);
 }
 
@@ -466,14 +466,14 @@ static void an_outlying_specimen_is_reported(void **state)
     bench->datasets[2].info = bench->datasets[1].info;
     bench->datasets[2].info.sample = 3;
     check(bench);
-    assert_told(bench, WB_CHECK_DOUBT, 3, "lower than the others'");
+    assert_remark(bench, WB_CHECK_DOUBT, 3, "lower than the others'");
     release(bench);
 }
 
 static void one_specimen_is_noted(void **state)
 {
     (void)state;
-    assert_told(good, WB_CHECK_NOTE, 0, "one specimen");
+    assert_remark(good, WB_CHECK_NOTE, 0, "one specimen");
     assert_no_doubt(good);
 }
 
@@ -552,8 +552,8 @@ static void relaxation_at_rest_is_reported(void **state)
         assert_int_equal(n[1], cases[i].doubts);
         assert_int_equal(n[0], cases[i].notes);
         if (cases[i].fall > 0.002)
-            assert_told(bench, cases[i].doubts ? WB_CHECK_DOUBT : WB_CHECK_NOTE, 1,
-                        "while nothing moves");
+            assert_remark(bench, cases[i].doubts ? WB_CHECK_DOUBT : WB_CHECK_NOTE, 1,
+                          "while nothing moves");
         release(bench);
     }
 }
@@ -574,7 +574,7 @@ static void a_held_test_is_doubted_but_not_one_held_at_rest(void **state)
         if (i == 0)
             assert_no_doubt(good);
     }
-    assert_told(good, WB_CHECK_DOUBT, 1, "the test was held 1 time, for 31 s in all");
+    assert_remark(good, WB_CHECK_DOUBT, 1, "the test was held 1 time, for 31 s in all");
 }
 
 /* Three types, four lengths, five specimens each. */

@@ -749,7 +749,7 @@ static void relaxation_is_found_from_the_dwell(void **unused)
     }
 }
 
-/* A law without elements misses the wire that relaxes, and is told apart from it. */
+/* A law without elements misses the wire that relaxes, and is distinguished from it. */
 static void a_law_that_does_not_relax_misses_one_that_does(void **unused)
 {
     (void)unused;

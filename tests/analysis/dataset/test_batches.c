@@ -48,10 +48,10 @@ static void two_batches_are_told(void **unused)
         double apart, least;
     } cases[] = {{6, 7.5, 0.45}, {10, 5.0, 0.35}, {10, 7.5, 0.9}, {20, 5.0, 0.85}};
     for (int i = 0; i < 4; i++) {
-        const double told = count(cases[i].n, cases[i].apart, SAMPLES) / (double)SAMPLES;
+        const double found = count(cases[i].n, cases[i].apart, SAMPLES) / (double)SAMPLES;
         print_message("    %d numbers, %.2f standard deviations apart: %.0f %%\n", cases[i].n,
-                      cases[i].apart, 100.0 * told);
-        assert_true(told >= cases[i].least);
+                      cases[i].apart, 100.0 * found);
+        assert_true(found >= cases[i].least);
     }
 }
 

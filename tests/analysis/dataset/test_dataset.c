@@ -172,7 +172,7 @@ static void a_dataset_comes_back_as_it_was(void **state)
         assert_same(read.shape_rows[i].x, written.shape_rows[i].x);
         assert_same(read.shape_rows[i].s, 0.0142);
     }
-    /* Overwritten only when told so. */
+    /* Overwritten only with `force`. */
     assert_int_equal(wb_dataset_write(&read, path, false), WB_ERR_EXISTS);
     assert_int_equal(wb_dataset_write(&read, path, true), WB_OK);
     wb_dataset_release(&written);

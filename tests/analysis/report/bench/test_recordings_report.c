@@ -1,4 +1,4 @@
-/* The report of small campaigns: its files, their bytes, and what is told when things are missing
+/* The report of small campaigns: its files, their bytes, and what it says when things are missing
  * or exceeded. The good one is made of the beam's own curves, the others of made-up recordings. */
 #include "tests/analysis/beam_data.h"
 

@@ -409,7 +409,7 @@ static void a_dataset_of_a_changed_model_is_outdated(void **state)
     assert_int_equal(run->simulation.state, WB_SIMULATION_STALE);
     assert_non_null(strstr(wb_text_string(&run->simulation.problem),
                            "fields_at_mm[1] is 50 in it, and 51 is wanted"));
-    /* What it cost can still be told. */
+    /* The cost is still given. */
     assert_close(run->simulation.cpu_s, 200.0, 1e-12);
     release();
 }
