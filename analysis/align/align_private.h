@@ -187,8 +187,8 @@ double wb_align_level_uncertainty(const struct wb_align *align);
 
 /* --- the document --- */
 
-/* Keys of `bending_plane` and `stage` of the checks. */
-extern const struct wb_keys wb_align_rows_plane_keys, wb_align_rows_stage_keys;
+/* Keys of `bending_plane` of the checks. */
+extern const struct wb_keys wb_align_plane_keys;
 
 /* Logs a warning and lists it in the dataset. */
 void wb_align_warn(struct wb_align *align, const char *format, ...)

@@ -12,6 +12,7 @@
 /* --- keys --- */
 
 #define ALIGN(member) WB_AT(struct wb_align, member)
+#define FRAME(member) WB_AT(struct wb_bench_frame, member)
 
 /* --- checks --- */
 
@@ -161,6 +162,39 @@ static const struct wb_key import_rows[] = {
 };
 static WB_KEYS(import, "mocap_import", "The import of files of cameras and load cell.");
 
+static const struct wb_key wb_align_plane_rows[] = {
+    {"planarity_rms_mm", FRAME(planarity) | ROUNDED,
+     "RMS distance of the markers from the bending plane"},
+    {"plane_tilt_deg", FRAME(plane_tilt) | ROUNDED,
+     "angle of the fitted plane's normal to the horizontal"},
+    {"clamp_motion_mm", FRAME(motion) | ROUNDED, "travel of the clamp's marker"},
+    {"clamp_path_rms_mm", FRAME(straightness) | ROUNDED,
+     "RMS distance of the clamp's path from a straight line"},
+    {"vertical_tilt_deg", FRAME(tilt) | ROUNDED,
+     "angle between the clamp's motion and the cameras' up axis"},
+    {"vertical_uncertainty_mrad", NUMBER | UNKNOWN,
+     "standard uncertainty of the vertical's direction"},
+    {"vertical", TEXT, "source of the vertical's direction"},
+};
+WB_KEYS(wb_align_plane, "bending_plane", "The plane in which the wire bends.");
+
+static const struct wb_key stage_rows[] = {
+    {"reports", INTEGER | OPTIONAL, "position reports of the stage that were compared"},
+    {"slope", NUMBER | OPTIONAL, "measured over commanded travel"},
+    {"slope_uncertainty", NUMBER | UNKNOWN | OPTIONAL, "standard uncertainty of the slope"},
+    {"offset_mm", NUMBER | OPTIONAL, "measured travel at a commanded travel of zero"},
+    {"report_lag_ms", NUMBER | OPTIONAL, "delay of the stage's reports"},
+    {"residual_rms_mm", NUMBER | OPTIONAL, "RMS deviation of the travel from the line"},
+    {"largest_residual_mm", NUMBER | OPTIONAL, "largest deviation from the line"},
+    {"not_returned_mm", NUMBER | UNKNOWN | OPTIONAL,
+     "measured less commanded travel after the test, less the same before it"},
+    {"lost_steps", FLAG, "the stage seems to have lost steps"},
+};
+static WB_KEYS(
+    stage, "stage_check",
+    "Measured over commanded travel of the stage; only `lost_steps` where the clamp did not follow "
+    "the stage.");
+
 static const struct wb_key wb_align_checks_rows[] = {
     {"import", OBJECT | OPTIONAL, "of an imported recording: what the import found", &import_keys},
     {"losses", OBJECT | OPTIONAL, "frames and readings that were lost", &losses_keys},
@@ -170,9 +204,8 @@ static const struct wb_key wb_align_checks_rows[] = {
      "frames left out: without a stamp, repeated or out of order"},
     {"load_cell_stream", OBJECT | OPTIONAL, "the stream of the load cell", &load_stream_keys},
     {"markers", OBJECT | OPTIONAL, "identification of the markers", &markers_keys},
-    {"bending_plane", OBJECT | OPTIONAL, "plane in which the wire bends",
-     &wb_align_rows_plane_keys},
-    {"stage", OBJECT | OPTIONAL, "measured over commanded travel", &wb_align_rows_stage_keys},
+    {"bending_plane", OBJECT | OPTIONAL, "plane in which the wire bends", &wb_align_plane_keys},
+    {"stage", OBJECT | OPTIONAL, "measured over commanded travel", &stage_keys},
     {"zero_load", OBJECT | LIST | OPTIONAL, "stretches without load", &zero_keys},
     {"timing", OBJECT | OPTIONAL, "effect of a lag between force and deflection", &timing_keys},
     {"natural_shape", OBJECT | OPTIONAL, "natural shape from force and markers", &natural_keys},

@@ -10,7 +10,6 @@
 #include "analysis/align/align_private.h"
 #include "analysis/align/axis_fit.h"
 #include "analysis/dataset/fit.h"
-#include "analysis/keys/row.h"
 #include "base/memory.h"
 #include "base/units.h"
 
@@ -46,24 +45,6 @@ static double typical_period(const struct wb_align *align)
     return period;
 }
 
-#define FRAME(member) WB_AT(struct wb_bench_frame, member)
-
-static const struct wb_key wb_align_rows_plane_rows[] = {
-    {"planarity_rms_mm", FRAME(planarity) | ROUNDED,
-     "RMS distance of the markers from the bending plane"},
-    {"plane_tilt_deg", FRAME(plane_tilt) | ROUNDED,
-     "angle of the fitted plane's normal to the horizontal"},
-    {"clamp_motion_mm", FRAME(motion) | ROUNDED, "travel of the clamp's marker"},
-    {"clamp_path_rms_mm", FRAME(straightness) | ROUNDED,
-     "RMS distance of the clamp's path from a straight line"},
-    {"vertical_tilt_deg", FRAME(tilt) | ROUNDED,
-     "angle between the clamp's motion and the cameras' up axis"},
-    {"vertical_uncertainty_mrad", NUMBER | UNKNOWN,
-     "standard uncertainty of the vertical's direction"},
-    {"vertical", TEXT, "source of the vertical's direction"},
-};
-WB_KEYS(wb_align_rows_plane, "bending_plane", "The plane in which the wire bends.");
-
 static void describe_markers(struct wb_align *align)
 {
     const struct wb_marker_tracks *const tracks = &align->tracks;
@@ -77,7 +58,7 @@ static void describe_markers(struct wb_align *align)
     wb_json_set_integer(object, "model_filled_left_out", (int64_t)align->cloud.n_filled);
     wb_json_set_integer(object, "chain_searches", (int64_t)tracks->n_searches);
     struct wb_json *const plane = wb_json_set_object(align->checks, "bending_plane");
-    WB_PUT(plane, &wb_align_rows_plane_keys, struct wb_bench_frame, frame);
+    WB_PUT(plane, &wb_align_plane_keys, struct wb_bench_frame, frame);
     wb_align_set(plane, "vertical_uncertainty_mrad", frame->up_uncertainty * 1e3);
     wb_json_set_text(plane, "vertical",
                      frame->up_from_motion ? "direction of the clamp's motion"
@@ -574,33 +555,18 @@ static bool fit_stage(const struct wb_align *align, const struct pair *pairs, si
     return true;
 }
 
-#define FIT(member) WB_AT(struct stage_fit, member)
-
-static const struct wb_key wb_align_rows_stage_rows[] = {
-    {"reports", INTEGER | OPTIONAL, "position reports of the stage that were compared"},
-    {"slope", FIT(slope) | ROUNDED | OPTIONAL, "measured over commanded travel"},
-    {"slope_uncertainty", FIT(slope_deviation) | ROUNDED | UNKNOWN | OPTIONAL,
-     "standard uncertainty of the slope"},
-    {"offset_mm", FIT(offset) | ROUNDED | OPTIONAL,
-     "measured travel at a commanded travel of zero"},
-    {"report_lag_ms", FIT(lag) | ROUNDED | OPTIONAL, "delay of the stage's reports"},
-    {"residual_rms_mm", FIT(rms) | ROUNDED | OPTIONAL, "RMS deviation of the travel from the line"},
-    {"largest_residual_mm", FIT(largest) | ROUNDED | OPTIONAL, "largest deviation from the line"},
-    {"not_returned_mm", FIT(returned) | ROUNDED | UNKNOWN | OPTIONAL,
-     "measured less commanded travel after the test, less the same before it"},
-    {"lost_steps", FLAG, "the stage seems to have lost steps"},
-};
-WB_KEYS(
-    wb_align_rows_stage, "stage_check",
-    "Measured over commanded travel of the stage; only `lost_steps` where the clamp did not follow "
-    "the stage.");
-
 static void describe_stage(struct wb_align *align, const struct stage_fit *fit, size_t n)
 {
     struct wb_json *const object = wb_json_set_object(align->checks, "stage");
     const bool lost = lost_steps(align, fit);
     wb_json_set_integer(object, "reports", (int64_t)n);
-    WB_PUT(object, &wb_align_rows_stage_keys, struct stage_fit, fit);
+    wb_align_set(object, "slope", fit->slope);
+    wb_align_set(object, "slope_uncertainty", fit->slope_deviation);
+    wb_align_set(object, "offset_mm", fit->offset / WB_MM);
+    wb_align_set(object, "report_lag_ms", fit->lag * 1e3);
+    wb_align_set(object, "residual_rms_mm", fit->rms / WB_MM);
+    wb_align_set(object, "largest_residual_mm", fit->largest / WB_MM);
+    wb_align_set(object, "not_returned_mm", fit->returned / WB_MM);
     wb_json_set_boolean(object, "lost_steps", lost);
     if (lost)
         wb_align_warn(
