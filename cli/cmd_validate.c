@@ -416,8 +416,7 @@ static void append_verdict(struct wb_text *text, const struct group *g)
 {
     static const char *const verdicts[] = {
         [WB_VALIDATE_PREDICTED] = "yes: within the scatter of specimens",
-        [WB_VALIDATE_NOT_PREDICTED] = "no: the law is wrong, the specimens are of another wire, or "
-                                      "this is the one validation of twenty: ",
+        [WB_VALIDATE_NOT_PREDICTED] = "no: wrong law or another wire (by chance in 1 of 20): ",
         [WB_VALIDATE_UNDECIDED] = "undecided: the scatter between specimens is unknown",
         [WB_VALIDATE_BEYOND] = "with care: bent beyond the range of the properties",
         [WB_VALIDATE_NOT_CONVERGED] = "no: the beam did not converge up to the largest deflection",
