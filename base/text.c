@@ -11,8 +11,9 @@
 /* Makes room for `more` bytes and a NUL; a size that no memory has fails like an allocation. */
 static void reserve(struct wb_text *text, size_t more)
 {
-    const size_t needed = more < SIZE_MAX / 2 ? text->length + more + 1 : SIZE_MAX;
-    text->bytes = wb_memory_room(text->bytes, &text->capacity, needed, 1);
+    if (more >= SIZE_MAX / 2)
+        wb_memory_need(NULL);
+    text->bytes = wb_memory_room(text->bytes, &text->capacity, text->length + more + 1, 1);
 }
 
 void wb_text_append(struct wb_text *text, const char *format, ...)
