@@ -513,6 +513,29 @@ static void same_start_date_gives_the_same_bytes(void **state)
     }
 }
 
+static void specimens_differ_because_their_sample_is_the_seed(void **state)
+{
+    static const char second[] = "record fixtures/rigs/paper.yaml --virtual --start 2026-11-25 "
+                                 "--specimen fixtures/specimens/type1-L85-2.yaml --travel-mm 8 ";
+    (void)state;
+    for (int seed = 1; seed <= 2; seed++) {
+        char line[256];
+        size_t n[2];
+        snprintf(line, sizeof line, "%s-o a.wbr", second);
+        run(line);
+        assert_code(0);
+        snprintf(line, sizeof line, "%s-o b.wbr --seed %d", second, seed);
+        run(line);
+        assert_code(0);
+        char *const a = bytes_of("a.wbr", &n[0]), *const b = bytes_of("b.wbr", &n[1]);
+        const bool is_same = n[0] == n[1] && memcmp(a, b, n[0]) == 0;
+        assert_int_equal(is_same, seed == 2);
+        free(a);
+        free(b);
+        close_bench(NULL);
+    }
+}
+
 static void start_of(const char *name, char utc[WB_TIME_TEXT])
 {
     struct wb_recording *recording;
@@ -572,6 +595,7 @@ int main(void)
         FACT(series_of_masses_is_due_before_a_test_and_gives_a_certificate),
         FACT(series_asks_again_for_a_specimen_whose_test_did_not_begin),
         FACT(same_start_date_gives_the_same_bytes),
+        FACT(specimens_differ_because_their_sample_is_the_seed),
         FACT(date_is_the_given_or_the_real_one),
         FACT(virtual_test_advises_no_release),
     };
