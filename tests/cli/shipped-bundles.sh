@@ -14,8 +14,9 @@ fi
 grep -qE ': ([0-9]+) of \1 datasets used' "$folder/a.out" || fail 'a dataset is missing or outdated'
 grep 'limit .* exceeded' "$folder/a.out" | grep -v rms_max && fail 'energy or cost is beyond its limit'
 make_it_again "$campaign"
-# Of five groups: sections, forces, errors, energies, the section model; studies, eleven bent bundles, 3D beside 1D.
-expect_figures 42
+# The first page; of five groups: sections, forces, errors, energies, the section model; studies,
+# eleven bent bundles, 3D beside 1D.
+expect_figures 43
 forbid "$folder|$root/"
 
 # What a user calibrates is what the report has of the first bundle.

@@ -24,6 +24,6 @@ sed -e 's/calibration_rms_max: .*/calibration_rms_max: 1e-5/' -e 's/whole_cycle:
 "$wirebench" report "$folder/strict.yaml" -o "$folder/strict" >"$folder/strict.out" 2>&1
 [ $? -eq 4 ] || fail 'an exceeded limit does not end with 4'
 grep -q 'limit 1e-05 exceeded' "$folder/strict.out" || fail 'the exceeded limit is not named'
-grep -q 'Limit exceeded' "$folder/strict/report.html" || fail 'the report hides the exceeded limit'
+grep -q 'class="warning"><b>Failed\.</b> Type 1, calibration' "$folder/strict/report.html" || fail 'the report hides the exceeded limit'
 
 finish 'report of the shipped campaign'

@@ -11,7 +11,7 @@ grep -q '9 of 9 datasets used' "$folder/a.out" || fail 'a dataset is missing or 
 make_it_again "$campaign"
 expect_figures 9
 forbid "experiment|$folder|$root"
-[ "$(grep -o 'Limit kept' "$folder/a/report.html" | wc -l)" -eq 4 ] || fail 'limits are missing'
+[ "$(grep -o '<b>Passed\.</b>' "$folder/a/report.html" | wc -l)" -eq 4 ] || fail 'limits are missing'
 grep -q 'substitute' "$folder/a/report.html" || fail 'substitutes are not named'
 
 finish 'report of the shipped simulations'

@@ -48,11 +48,14 @@ enum group {
 static const struct {
     const char *name;
     double most_blamed; /* part of the benches */
+    /* Part of the intervals. On a wrong bench they may be wider than they need to be, as its
+     * doubted zero widens them. */
+    double least_held, most_held;
 } groups_of_campaigns[GROUPS] = {
-    {"laws that a candidate contains", 0.02},
-    {"laws that no candidate contains", 0.02},
-    {"laws whose candidates are left out", 0.6},
-    {"zero of deflection 0.5 mm off", 1.0},
+    {"laws that a candidate contains", 0.02, 0.93, 0.97},
+    {"laws that no candidate contains", 0.02, 0.93, 0.97},
+    {"laws whose candidates are left out", 0.6, 0.90, 0.98},
+    {"zero of deflection 0.5 mm off", 1.0, 0.90, 1.0},
 };
 
 /* A law of the virtual rig's wires, and the candidates that are not tried. */
@@ -366,7 +369,8 @@ static void intervals_hold_the_truth(void **unused)
         printf("%s: %.1f %% hold, %.1f %% of the benches doubted\n", groups_of_campaigns[g].name,
                100.0 * held, 100.0 * blamed);
         assert_true(blamed <= groups_of_campaigns[g].most_blamed);
-        assert_true(held >= 0.90 && held <= 0.98);
+        assert_true(held >= groups_of_campaigns[g].least_held);
+        assert_true(held <= groups_of_campaigns[g].most_held);
     }
 }
 
