@@ -213,6 +213,28 @@ static enum wb_status compare_documents(const struct wb_json *was, const struct 
     return WB_OK;
 }
 
+/* Laws that the data exclude enter no result. Their search ends on a flat slope, where another
+ * rounding leads it elsewhere: their numbers are not compared, only their names and order. */
+static void forget_excluded_laws(struct wb_json *report)
+{
+    static const char *const numbers[] = {"misfit", "flexural_rigidity_N_mm2",
+                                          "residual_curvature_ratio"};
+    const struct wb_json *const wires = wb_json_get(report, "wires");
+    for (size_t i = 0; i < wb_json_length(wires); i++) {
+        const struct wb_json *const cycle = wb_json_get(wb_json_item(wires, i), "cycle");
+        const struct wb_json *const ranked =
+            wb_json_get(wb_json_get(cycle, "hardening_rule"), "ranked");
+        for (size_t k = 0; k < wb_json_length(ranked); k++) {
+            struct wb_json *const law = wb_json_item(ranked, k);
+            bool counts = true;
+            if (!wb_json_get_boolean(law, "counts", &counts) || counts)
+                continue;
+            for (size_t n = 0; n < sizeof numbers / sizeof numbers[0]; n++)
+                wb_json_set_number(law, numbers[n], (double)NAN);
+        }
+    }
+}
+
 static enum wb_status compare_numbers(const struct pair *pair, const char *build)
 {
     char path[WB_PATH];
@@ -222,8 +244,11 @@ static enum wb_status compare_numbers(const struct pair *pair, const char *build
     enum wb_status status = wb_file_join(path, pair->again, "report.json");
     if (status == WB_OK)
         status = wb_json_read(&is, path);
-    if (status == WB_OK)
+    if (status == WB_OK) {
+        forget_excluded_laws(was);
+        forget_excluded_laws(is);
         status = compare_documents(was, is, build, pair->order->out);
+    }
     wb_json_destroy(was);
     wb_json_destroy(is);
     return status;

@@ -9,6 +9,8 @@
 #include "base/units.h"
 
 static const double coverage = 0.95;
+/* Logarithms below this are round-off: the chosen law compared with itself. */
+static const double round_off = 1e-12;
 /* Width of a candidate's range on either side, in standard errors of its fit. */
 static const double range_errors = 2.0;
 /* Largest half width of a logarithm, a factor of ten: beyond it the linearised errors are
@@ -162,7 +164,7 @@ static void add_form(const struct wb_cycle_calibration *calibration, enum wb_cyc
     for (int i = 0; i < calibration->n_ranked; i++) {
         const struct wb_cycle_rank *const rank = &calibration->ranked[i];
         const double off = log(mean_of(calibration, rank->candidate, number) / value);
-        if (!isfinite(off))
+        if (!isfinite(off) || fabs(off) < round_off)
             continue;
         squares += rank->weight * off * off;
         if (rank->misfit <= as_good * calibration->ranked[0].misfit) {
