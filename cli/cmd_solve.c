@@ -352,9 +352,10 @@ static enum wb_status check_model(const struct wb_solve_settings *s)
     char path[WB_PATH];
     if (wb_file_find_named(path, folder, name, NULL, NULL, &why) != WB_OK)
         return WB_OK;
-    return wb_file_kind_check(path, WB_FILE_BIT(is_wire     ? WB_FILE_WIRE
-                                                : is_bundle ? WB_FILE_BUNDLE
-                                                            : WB_FILE_MODEL));
+    return wb_file_kind_check(path,
+                              is_wire ? WB_FILE_BIT(WB_FILE_WIRE) | WB_FILE_BIT(WB_FILE_PROPERTIES)
+                              : is_bundle ? WB_FILE_BIT(WB_FILE_BUNDLE)
+                                          : WB_FILE_BIT(WB_FILE_MODEL));
 }
 
 int wb_cmd_solve(int argc, char **argv)

@@ -18,8 +18,10 @@ static const char *const bundle_models[] = {
 
 static const struct wb_setting rows[] = {
     {WB_ROW_TEXT(wb_solve_settings, wire, "wire"),
-     WB_ROW_OPTION("wire", "NAME|FILE",
-                   "Wire with its properties: a file, or a name in fixtures/wires"),
+     WB_ROW_OPTION(
+         "wire", "NAME|FILE",
+         "Wire with its properties: a wire file, a properties file of `wirebench calibrate`, or "
+         "a name in fixtures/wires"),
      .applies = WB_SOLVE_CANTILEVER},
     {WB_ROW_QUANTITY(wb_solve_settings, length, "length_mm", "mm", WB_MM, 1e-3, 1e6, 0.0),
      WB_ROW_OPTION("length-mm", "L", "Free length from clamp to tip"), .required = true,

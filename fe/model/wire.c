@@ -1,6 +1,8 @@
 #include "fe/model/wire.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "base/circle.h"
 #include "base/config.h"
@@ -12,25 +14,64 @@
     10e9 /* filled polymers; PVC and cross-linked polyethylene are below 3 GPa */
 #define FINEST_STRAND 0.05e-3
 
-static enum wb_status read_properties(const struct wb_config_node *node, struct wb_wire *wire)
+enum {
+    NUMBERS = 6 /* keys of the law: Poisson's ratio, Ludwik's four numbers, and the block */
+};
+
+static void set_law_keys(struct wb_material *m, const struct wb_config_node **law,
+                         struct wb_config_key keys[NUMBERS])
 {
-    struct wb_material *m = &wire->material;
-    const struct wb_config_node *law = NULL;
-    const struct wb_config_key keys[] = {
-        WB_CONFIG_OPTIONAL_TEXT("source", wire->source),
+    const struct wb_config_key all[NUMBERS] = {
         WB_CONFIG_NUMBER("youngs_modulus_MPa", &m->youngs_modulus, WB_MPA, 1e-3, 1e7),
         WB_CONFIG_NUMBER("poissons_ratio", &m->poissons_ratio, 1.0, -0.99, 0.5),
         WB_CONFIG_NUMBER("yield_stress_MPa", &m->yield_stress, WB_MPA, 1e-6, 1e6),
         WB_CONFIG_NUMBER("strength_coefficient_MPa", &m->strength_coefficient, WB_MPA, 0.0, 1e9),
         WB_CONFIG_NUMBER("hardening_exponent", &m->hardening_exponent, 1.0, 1e-3, 2.0),
-        WB_CONFIG_OPTIONAL_NODE("law", &law),
+        WB_CONFIG_OPTIONAL_NODE("law", law),
     };
+    memcpy(keys, all, sizeof all);
+}
 
-    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
-    m->hardening = WB_HARDENING_ISOTROPIC_POWER;
-    WB_TRY(wb_law_file_read(law, m, &wire->law));
+static enum wb_status take_law(const struct wb_config_node *law, struct wb_wire *wire)
+{
+    wire->material.hardening = WB_HARDENING_ISOTROPIC_POWER;
+    WB_TRY(wb_law_file_read(law, &wire->material, &wire->law));
     wire->has_properties = true;
     return WB_OK;
+}
+
+static enum wb_status read_properties(const struct wb_config_node *node, struct wb_wire *wire)
+{
+    const struct wb_config_node *law = NULL;
+    struct wb_config_key keys[NUMBERS + 1] = {WB_CONFIG_OPTIONAL_TEXT("source", wire->source)};
+    set_law_keys(&wire->material, &law, keys + 1);
+    WB_TRY(wb_config_map(node, keys, WB_COUNT(keys)));
+    return take_law(law, wire);
+}
+
+/* Of the properties file that `wirebench calibrate -o` writes, what describes a wire; its other
+ * keys are those of analysis/calibration/properties. */
+static enum wb_status read_calibrated(const struct wb_config_node *root, struct wb_wire *wire)
+{
+    const struct wb_config_node *law = NULL;
+    double mass = 0.0;
+    struct wb_config_key keys[NUMBERS + 3] = {
+        WB_CONFIG_TEXT("wire", wire->name),
+        WB_CONFIG_NUMBER("outer_diameter_mm", &wire->outer_diameter, WB_MM, 1e-3, 1e3),
+        WB_CONFIG_NUMBER("mass_per_length_kg_m", &mass, 1.0, 0.0, 1e3),
+    };
+    set_law_keys(&wire->material, &law, keys + 3);
+    for (size_t i = 0; i < WB_COUNT(keys); i++) {
+        const struct wb_config_node *const node = wb_config_find(root, keys[i].name);
+        if (node)
+            WB_TRY(wb_config_value(node, &keys[i]));
+        else if (!keys[i].optional)
+            return wb_config_refuse(root, keys[i].name, "this key is missing");
+    }
+    const double d = wire->outer_diameter;
+    wire->density = mass / (M_PI * d * d / 4.0);
+    snprintf(wire->source, sizeof wire->source, "%s", wb_config_origin(root));
+    return take_law(law, wire);
 }
 
 static enum wb_status read_wire(const struct wb_config_node *root, void *wire)
@@ -49,6 +90,11 @@ static enum wb_status read_wire(const struct wb_config_node *root, void *wire)
         WB_CONFIG_OPTIONAL_NODE("properties", &properties),
     };
 
+    if (wb_config_find(root, "wire") && !wb_config_find(root, "name")) {
+        WB_TRY(read_calibrated(root, &w));
+        *(struct wb_wire *)wire = w;
+        return WB_OK;
+    }
     WB_TRY(wb_config_map(root, keys, WB_COUNT(keys)));
     if (w.conductor_diameter > w.outer_diameter)
         return wb_config_refuse(root, "conductor_diameter_mm",

@@ -36,7 +36,8 @@ struct wb_wire {
     struct wb_law law;           /* the same, unless the file has a law of its own beside it */
 };
 
-/* Reads a wire file. Errors name file, line and key; they go to `why`, or to the log where that is
+/* Reads a wire file, or the properties file that `wirebench calibrate -o` writes, whose conductor
+ * diameter is 0: not known. Errors name file, line and key; they go to `why`, or to the log where that is
  * NULL. */
 WB_MUST_CHECK enum wb_status wb_wire_read(const char *path, struct wb_wire *wire,
                                           struct wb_reason *why);

@@ -134,7 +134,7 @@ rejects 'is a rig file, expected a machine file' import force curve.txt --specim
 rejects 'is a take of motion capture, expected a table of numbers' import force take.trc \
     --specimen piece.yaml --machine "$fixtures/machines/tensile.yaml" -o x
 rejects 'is a table of numbers, expected a take' import mocap curve.txt --specimen "$specimen" --rig "$rig" -o x.wbr
-rejects 'is a model file, expected a wire file' solve cantilever --wire "$fixtures/models/follower-8awg.yaml" \
+rejects 'is a model file, expected a properties file or a wire file' solve cantilever --wire "$fixtures/models/follower-8awg.yaml" \
     --length-mm 85 --deflection-mm 5
 rejects 'is a wire file, expected a bundle file' solve bundle "$fixtures/wires/type1.yaml"
 rejects 'is a bundle file, expected a model file' solve wire1d "$fixtures/bundles/7-type3.yaml"

@@ -124,6 +124,57 @@ static void shipped_wires_are_the_papers(void **unused)
     assert_int_equal(wb_wire_read(path, &wire, NULL), WB_OK);
 }
 
+/* What `wirebench calibrate -o` writes; keys that do not describe the wire are left to the reader
+ * of properties. */
+static const char *const calibrated = "schema: 1\n"
+                                      "wire: \"sample\"\n"
+                                      "outer_diameter_mm: 1.1\n"
+                                      "mass_per_length_kg_m: 0.00386\n"
+                                      "youngs_modulus_MPa: 5021\n"
+                                      "yield_stress_MPa: 3.90\n"
+                                      "strength_coefficient_MPa: 3222\n"
+                                      "hardening_exponent: 0.99\n"
+                                      "poissons_ratio: 0.39\n"
+                                      "law:\n"
+                                      "  form: parallel\n"
+                                      "  hardening: kinematic\n"
+                                      "  parts:\n"
+                                      "    - {modulus_MPa: 2600, yield_strain: 0.0012}\n"
+                                      "    - {modulus_MPa: 350}\n"
+                                      "residual_curvature_ratio: {value: 0.158}\n";
+
+static void properties_file_is_a_wire(void **unused)
+{
+    (void)unused;
+    struct wb_wire wire;
+    assert_int_equal(wb_wire_parse(calibrated, "p.yaml", &wire, NULL), WB_OK);
+    assert_string_equal(wire.name, "sample");
+    assert_string_equal(wire.source, "p.yaml");
+    assert_true(wire.has_properties && wire.conductor_diameter == 0.0);
+    assert_close_relative(wire.outer_diameter, 1.1e-3, 1e-15);
+    assert_close_relative(wb_wire_mass_per_length(&wire), 0.00386, 1e-14);
+    assert_int_equal(wire.law.form, WB_LAW_PARALLEL);
+    assert_int_equal(wire.law.n_parts, 2);
+    assert_true(wire.law.isotropic_share == 0.0);
+}
+
+static void properties_file_without_a_key_is_refused(void **unused)
+{
+    (void)unused;
+    static const char *const keys[] = {"mass_per_length_kg_m", "outer_diameter_mm",
+                                       "poissons_ratio"};
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+        char text[1024];
+        struct wb_wire wire;
+        struct wb_reason why = {.text = ""};
+        snprintf(text, sizeof text, "%s", calibrated);
+        *strstr(text, keys[i]) = 'x';
+        assert_int_equal(wb_wire_parse(text, "p.yaml", &wire, &why), WB_ERR_FORMAT);
+        assert_non_null(strstr(why.text, "p.yaml:1: "));
+        assert_non_null(strstr(why.text, keys[i]));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -132,6 +183,8 @@ int main(void)
         cmocka_unit_test(stated_uncertainties_are_read),
         cmocka_unit_test(bad_wires_are_refused_by_file_line_and_key),
         cmocka_unit_test(shipped_wires_are_the_papers),
+        cmocka_unit_test(properties_file_is_a_wire),
+        cmocka_unit_test(properties_file_without_a_key_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
