@@ -15,17 +15,19 @@
 enum {
     /* The first double is 1 if the point ever yielded; the second is the number of overlay parts
      * that have history rows. */
-    HISTORY_HEAD = 8,
+    HISTORY_HEAD = 12,
     /* Also in the head, for Maxwell elements: strains at the end of the last step, then N and M of
-     * each element. */
+     * each element; in space the curvature about y and the moment about y follow. */
     HISTORY_EPS = 2,
     HISTORY_KAPPA,
     HISTORY_MAXWELL,
+    HISTORY_KAPPA_Y = HISTORY_MAXWELL + 2 * WB_LAW_MOST_MAXWELL,
+    HISTORY_MAXWELL_Y,
     HISTORY_ROWS = 3, /* plastic strain, accumulated plastic strain, yield or back stress */
     MAX_PASSES = 50
 };
 
-_Static_assert(HISTORY_MAXWELL + 2 * WB_LAW_MOST_MAXWELL <= HISTORY_HEAD, "head of the history");
+_Static_assert(HISTORY_MAXWELL_Y + WB_LAW_MOST_MAXWELL <= HISTORY_HEAD, "head of the history");
 
 /* Relative distance to the yield surface below which a fibre counts as elastic; see
  * tests/twin/material_stress.h. */
@@ -49,17 +51,24 @@ enum wb_fibres_kind {
     CHABOCHE
 };
 
+/* Axial strain and curvatures of the section about z and y; `largest` is a bound of the strains of
+ * all fibres. */
+struct strains {
+    double eps, kappa, kappa_y, largest;
+};
+
 struct wb_fibres {
     int n;           /* padded number of fibres */
     int n_materials; /* materials of the section, one batch each */
     struct batch *batches;
-    double *y, *area; /* (n) */
+    double *y, *z, *area; /* (n) */
     struct wb_material *materials;
     struct wb_hardening_table *tables; /* (n_materials) */
     double *virgin;                    /* history of a virgin point, with its head */
-    double outermost;                  /* largest |y|, m */
+    double outermost;                  /* largest distance from the axis, m */
     double yield_strain;               /* strain below which no fibre yields, 1 */
     double EA, ES, EI;                 /* elastic N = EA eps + ES kappa, M = ES eps + EI kappa */
+    double ES_y, EI_yz, EI_y;          /* the same for the curvature about y */
     double shear_ratio; /* shear stiffness of the section over the sum over its fibres */
     double shear_stiffness;
     enum wb_fibres_kind kind;
@@ -76,8 +85,11 @@ struct wb_fibres {
     struct wb_law_maxwell_step maxwell[WB_LAW_MOST_MAXWELL];
     const struct wb_point_law *point_laws; /* (n_materials) or NULL; borrowed */
     int point_history;                     /* history rows of the point law that needs most */
-    void (*respond)(const struct wb_fibres *fibres, double eps, double kappa, const double *before,
+    void (*respond)(const struct wb_fibres *fibres, struct strains strains, const double *before,
                     double *after, struct wb_fibres_response *response);
+    void (*respond_in_space)(const struct wb_fibres *fibres, struct strains strains,
+                             const double *before, double *after,
+                             struct wb_fibres_space_response *response);
     struct wb_memory memory; /* of all arrays */
 };
 
@@ -96,8 +108,9 @@ static void sort_fibres(struct wb_fibres *f, const struct wb_section *section)
             if (section->fibres[i].material != m)
                 continue;
             f->y[next] = section->fibres[i].y;
+            f->z[next] = section->fibres[i].z;
             f->area[next] = section->fibres[i].area;
-            f->outermost = fmax(f->outermost, fabs(f->y[next]));
+            f->outermost = fmax(f->outermost, hypot(f->y[next], f->z[next]));
             next++;
         }
         next = padded(next);
@@ -195,7 +208,7 @@ void wb_fibres_set_materials(struct wb_fibres *f, const struct wb_material *mate
 {
     memcpy(f->materials, materials, (size_t)f->n_materials * sizeof *materials);
     f->yield_strain = (double)INFINITY;
-    f->EA = f->ES = f->EI = 0.0;
+    f->EA = f->ES = f->EI = f->ES_y = f->EI_yz = f->EI_y = 0.0;
     for (int b = 0; b < f->n_materials; b++) {
         const struct wb_material *m = &f->materials[b];
         const struct wb_hardening_law *law = wb_hardening_law(m);
@@ -207,6 +220,9 @@ void wb_fibres_set_materials(struct wb_fibres *f, const struct wb_material *mate
             f->EA += EA;
             f->ES -= EA * f->y[i];
             f->EI += EA * f->y[i] * f->y[i];
+            f->ES_y += EA * f->z[i];
+            f->EI_yz -= EA * f->y[i] * f->z[i];
+            f->EI_y += EA * f->z[i] * f->z[i];
             if (!f->point_laws)
                 f->virgin[HISTORY_HEAD + 2 * f->n + i] = law->growth ? m->yield_stress : 0.0;
         }
@@ -396,23 +412,39 @@ static WB_ALWAYS_INLINE double add_lanes(lanes v)
     return (v[0] + v[2]) + (v[1] + v[3]);
 }
 
-/* Axial strain and curvature of the section. */
-struct strains {
-    double eps, kappa;
-};
-
-/* Sums over the fibres of a section, lane by lane. */
+/* Sums over the fibres of a section, lane by lane. Those with a y, about y, are of a section in
+ * space. */
 struct sums {
+    bool in_space;
     lanes N, M, D11, D12, D22;
+    lanes M_y, D1y, D2y, Dyy;
 };
 
-static WB_ALWAYS_INLINE void add_fibres(struct sums *sums, lanes force, lanes stiffness, lanes y)
+static WB_ALWAYS_INLINE lanes strain_at(const struct wb_fibres *f, int i, bool in_space,
+                                        struct strains at)
 {
+    lanes strain = at.eps - load(f->y + i) * at.kappa;
+    if (in_space)
+        strain += load(f->z + i) * at.kappa_y;
+    return strain;
+}
+
+static WB_ALWAYS_INLINE void add_fibres(struct sums *sums, const struct wb_fibres *f, int i,
+                                        lanes force, lanes stiffness)
+{
+    const lanes y = load(f->y + i);
     sums->N += force;
     sums->M -= force * y;
     sums->D11 += stiffness;
     sums->D12 -= stiffness * y;
     sums->D22 += stiffness * y * y;
+    if (!sums->in_space)
+        return;
+    const lanes z = load(f->z + i);
+    sums->M_y += force * z;
+    sums->D1y += stiffness * z;
+    sums->D2y -= stiffness * y * z;
+    sums->Dyy += stiffness * z * z;
 }
 
 static WB_ALWAYS_INLINE void take_sums(const struct sums *sums, struct wb_fibres_response *response)
@@ -425,21 +457,17 @@ static WB_ALWAYS_INLINE void take_sums(const struct sums *sums, struct wb_fibres
 }
 
 static WB_ALWAYS_INLINE void respond_rows(const struct wb_fibres *f, struct strains strains,
-                                          const double *rows, double *rows_after,
-                                          struct wb_fibres_response *response)
+                                          const double *rows, double *rows_after, struct sums *sums)
 {
-    const double eps = strains.eps, kappa = strains.kappa;
-    struct sums sums = {{0}, {0}, {0}, {0}, {0}};
-
     for (int b = 0; b < f->n_materials; b++) {
         for (int i = f->batches[b].begin; i < f->batches[b].end; i += LANES) {
             const struct rows h = rows_at(f, rows, rows_after, i);
-            const lanes y = load(f->y + i), area = load(f->area + i);
-            const struct answer answer = respond_of(f, &f->batches[b], eps - y * kappa, &h);
-            add_fibres(&sums, answer.stress * area, answer.tangent * area, y);
+            const struct answer answer =
+                respond_of(f, &f->batches[b], strain_at(f, i, sums->in_space, strains), &h);
+            const lanes area = load(f->area + i);
+            add_fibres(sums, f, i, answer.stress * area, answer.tangent * area);
         }
     }
-    take_sums(&sums, response);
 }
 
 /* The share of an overlay with isotropic hardening: the stress is that of the virgin curve at the
@@ -557,26 +585,22 @@ static WB_ALWAYS_INLINE struct answer respond_overlay_combined(const struct wb_f
 }
 
 static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct strains strains,
-                                             const double *before, double *after,
-                                             struct wb_fibres_response *response)
+                                             const double *before, double *after, struct sums *sums)
 {
-    const double eps = strains.eps, kappa = strains.kappa;
     const double beta = f->overlay->isotropic_share;
-    const double largest = fabs(eps) + f->outermost * fabs(kappa);
     struct active_parts active = {(int)before[1], (int)before[1]};
-    while (active.now < f->overlay->n && f->overlay->yield_strain[active.now] <= largest)
+    while (active.now < f->overlay->n && f->overlay->yield_strain[active.now] <= strains.largest)
         active.now++;
     after[1] = active.now;
     const double *const rows = before + HISTORY_HEAD;
     double *const rows_after = after + HISTORY_HEAD;
     const double *const grown = rows + f->capacity * f->n;
     double *const grown_after = rows_after + f->capacity * f->n;
-    struct sums sums = {{0}, {0}, {0}, {0}, {0}};
 
     for (int i = 0; i < f->n; i += LANES) {
         const struct rows h = rows_at(f, grown, grown_after, i);
-        const lanes y = load(f->y + i), area = load(f->area + i);
-        const lanes strain = eps - y * kappa;
+        const lanes strain = strain_at(f, i, sums->in_space, strains);
+        const lanes area = load(f->area + i);
         lanes force = {0}, stiffness = {0};
         if (beta < 1.0) {
             const struct answer moving =
@@ -591,9 +615,8 @@ static WB_ALWAYS_INLINE void respond_overlay(const struct wb_fibres *f, struct s
             force += beta * growing.stress * area;
             stiffness += beta * growing.tangent * area;
         }
-        add_fibres(&sums, force, stiffness, y);
+        add_fibres(sums, f, i, force, stiffness);
     }
-    take_sums(&sums, response);
 }
 
 /* Ludwik's law with combined hardening: the surface grows by beta H and moves by the rest, and a
@@ -736,29 +759,26 @@ static WB_ALWAYS_INLINE struct answer respond_chaboche(const struct wb_fibres *f
 
 /* All fibres of a section with a law of combined hardening. */
 static WB_ALWAYS_INLINE void respond_law(const struct wb_fibres *f, struct strains strains,
-                                         const double *before, double *after,
-                                         struct wb_fibres_response *response)
+                                         const double *before, double *after, struct sums *sums)
 {
     const double *const rows = before + HISTORY_HEAD;
     double *const rows_after = after + HISTORY_HEAD;
-    struct sums sums = {{0}, {0}, {0}, {0}, {0}};
     for (int i = 0; i < f->n; i += LANES) {
         const struct rows h = rows_at(f, rows, rows_after, i);
         const double *const backs = rows + HISTORY_ROWS * f->n + i;
         double *const backs_after = rows_after + HISTORY_ROWS * f->n + i;
-        const lanes y = load(f->y + i), area = load(f->area + i);
-        const lanes strain = strains.eps - y * strains.kappa;
+        const lanes strain = strain_at(f, i, sums->in_space, strains);
         const struct answer answer = f->kind == CHABOCHE
                                          ? respond_chaboche(f, strain, &h, backs, backs_after)
                                          : respond_combined(f, strain, &h, backs, backs_after);
-        add_fibres(&sums, answer.stress * area, answer.tangent * area, y);
+        const lanes area = load(f->area + i);
+        add_fibres(sums, f, i, answer.stress * area, answer.tangent * area);
     }
-    take_sums(&sums, response);
 }
 
 /* Point laws, one fibre after another: the history of a fibre is contiguous. */
-static void respond_points(const struct wb_fibres *f, double eps, double kappa,
-                           const double *before, double *after, struct wb_fibres_response *response)
+static void respond_points(const struct wb_fibres *f, struct strains strains, const double *before,
+                           double *after, struct wb_fibres_response *response)
 {
     const double *const rows = before + HISTORY_HEAD;
     double *const rows_after = after + HISTORY_HEAD;
@@ -769,8 +789,9 @@ static void respond_points(const struct wb_fibres *f, double eps, double kappa,
             const double y = f->y[i], area = f->area[i];
             double stress = 0.0, tangent = 0.0;
             if (area > 0.0)
-                law->respond(law->context, eps - y * kappa, rows + f->point_history * i,
-                             rows_after + f->point_history * i, &stress, &tangent);
+                law->respond(law->context, strains.eps - y * strains.kappa,
+                             rows + f->point_history * i, rows_after + f->point_history * i,
+                             &stress, &tangent);
             response->N += stress * area;
             response->M -= stress * area * y;
             response->D11 += tangent * area;
@@ -780,56 +801,77 @@ static void respond_points(const struct wb_fibres *f, double eps, double kappa,
     }
 }
 
-/* Response of a section of any kind of material, chosen at run time. */
+/* Adds the fibres of a section of any kind of material, chosen at run time. */
+static WB_ALWAYS_INLINE void add_any(const struct wb_fibres *f, struct strains strains,
+                                     const double *before, double *after, struct sums *sums)
+{
+    if (f->kind == AS_OVERLAY)
+        respond_overlay(f, strains, before, after, sums);
+    else if (f->kind == LUDWIK_COMBINED || f->kind == CHABOCHE)
+        respond_law(f, strains, before, after, sums);
+    else
+        respond_rows(f, strains, before + HISTORY_HEAD, after + HISTORY_HEAD, sums);
+}
+
 static WB_ALWAYS_INLINE void respond_any(const struct wb_fibres *f, struct strains strains,
                                          const double *before, double *after,
                                          struct wb_fibres_response *response)
 {
-    if (f->kind == AS_OVERLAY)
-        respond_overlay(f, strains, before, after, response);
-    else if (f->kind == LUDWIK_COMBINED || f->kind == CHABOCHE)
-        respond_law(f, strains, before, after, response);
-    else
-        respond_rows(f, strains, before + HISTORY_HEAD, after + HISTORY_HEAD, response);
+    struct sums sums = {.in_space = false};
+    add_any(f, strains, before, after, &sums);
+    take_sums(&sums, response);
 }
 
-/* The same function compiled for the baseline instruction set. No variant contracts a * b + c, so
- * all variants return identical bits. */
-static void respond_portably(const struct wb_fibres *f, double eps, double kappa,
-                             const double *before, double *after,
-                             struct wb_fibres_response *response)
+static WB_ALWAYS_INLINE void respond_in_space(const struct wb_fibres *f, struct strains strains,
+                                              const double *before, double *after,
+                                              struct wb_fibres_space_response *response)
 {
-    respond_any(f, (struct strains){eps, kappa}, before, after, response);
+    struct sums sums = {.in_space = true};
+    add_any(f, strains, before, after, &sums);
+    take_sums(&sums, &response->plane);
+    response->M_y = add_lanes(sums.M_y);
+    response->D1y = add_lanes(sums.D1y);
+    response->D2y = add_lanes(sums.D2y);
+    response->Dyy = add_lanes(sums.Dyy);
 }
 
+/* The two functions compiled for an instruction set. No variant contracts a * b + c, so all
+ * variants return identical bits. */
+#define DEFINE_VARIANT(name, attribute)                                                            \
+    attribute static void respond_##name(const struct wb_fibres *f, struct strains strains,        \
+                                         const double *before, double *after,                      \
+                                         struct wb_fibres_response *response)                      \
+    {                                                                                              \
+        respond_any(f, strains, before, after, response);                                          \
+    }                                                                                              \
+    attribute static void respond_##name##_in_space(                                               \
+        const struct wb_fibres *f, struct strains strains, const double *before, double *after,    \
+        struct wb_fibres_space_response *response)                                                 \
+    {                                                                                              \
+        respond_in_space(f, strains, before, after, response);                                     \
+    }
+
+DEFINE_VARIANT(portably, )
 #ifdef WB_HAS_X86_VARIANTS
-WB_AVX2 static void respond_avx2(const struct wb_fibres *f, double eps, double kappa,
-                                 const double *before, double *after,
-                                 struct wb_fibres_response *response)
-{
-    respond_any(f, (struct strains){eps, kappa}, before, after, response);
-}
-
-WB_AVX512 static void respond_avx512(const struct wb_fibres *f, double eps, double kappa,
-                                     const double *rows, double *rows_after,
-                                     struct wb_fibres_response *response)
-{
-    respond_any(f, (struct strains){eps, kappa}, rows, rows_after, response);
-}
+DEFINE_VARIANT(avx2, WB_AVX2)
+DEFINE_VARIANT(avx512, WB_AVX512)
 #endif
 
 static void choose_fastest(struct wb_fibres *fibres)
 {
-    fibres->respond = respond_portably;
+    wb_fibres_set_portable(fibres);
     if (fibres->point_laws) {
         fibres->respond = respond_points;
         return;
     }
 #ifdef WB_HAS_X86_VARIANTS
-    if (wb_processor_has_avx512())
+    if (wb_processor_has_avx512()) {
         fibres->respond = respond_avx512;
-    else if (wb_processor_has_avx2())
+        fibres->respond_in_space = respond_avx512_in_space;
+    } else if (wb_processor_has_avx2()) {
         fibres->respond = respond_avx2;
+        fibres->respond_in_space = respond_avx2_in_space;
+    }
 #endif
 }
 
@@ -860,6 +902,7 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
                                ? f->point_laws[m].n_history
                                : f->point_history;
     f->y = wb_memory_take(&f->memory, count, sizeof *f->y);
+    f->z = wb_memory_take(&f->memory, count, sizeof *f->z);
     f->area = wb_memory_take(&f->memory, count, sizeof *f->area);
     f->virgin = wb_memory_take(&f->memory, HISTORY_HEAD + (size_t)history_rows(f) * count,
                                sizeof *f->virgin);
@@ -891,6 +934,7 @@ enum wb_status wb_fibres_create(struct wb_fibres **out, const struct wb_section 
 void wb_fibres_set_portable(struct wb_fibres *fibres)
 {
     fibres->respond = respond_portably;
+    fibres->respond_in_space = respond_portably_in_space;
 }
 
 static void respond_virgin(const struct wb_fibres *f, double eps, double kappa,
@@ -928,16 +972,77 @@ void wb_fibres_respond(const struct wb_fibres *f, double eps, double kappa,
                        struct wb_fibres_response *restrict response)
 {
     const bool yielded = before[0] != 0.0;
+    const struct strains strains = {eps, kappa, 0.0, fabs(eps) + f->outermost * fabs(kappa)};
 
-    if (!yielded && fabs(eps) + f->outermost * fabs(kappa) <= f->yield_strain) {
+    if (!yielded && strains.largest <= f->yield_strain) {
         after[0] = 0.0;
         respond_virgin(f, eps, kappa, response);
     } else {
         after[0] = 1.0;
-        f->respond(f, eps, kappa, yielded ? before : f->virgin, after, response);
+        f->respond(f, strains, yielded ? before : f->virgin, after, response);
     }
     if (f->law.n_maxwell > 0)
         add_maxwell(f, eps, kappa, before, after, response);
+}
+
+/* Elastic forces and stiffness of all fibres, `ratio` times. */
+static void add_elastic_in_space(const struct wb_fibres *f, double ratio, struct strains at,
+                                 double force[3], struct wb_fibres_space_response *response)
+{
+    force[0] += ratio * (f->EA * at.eps + f->ES * at.kappa + f->ES_y * at.kappa_y);
+    force[1] += ratio * (f->ES * at.eps + f->EI * at.kappa + f->EI_yz * at.kappa_y);
+    force[2] += ratio * (f->ES_y * at.eps + f->EI_yz * at.kappa + f->EI_y * at.kappa_y);
+    response->plane.N += force[0];
+    response->plane.M += force[1];
+    response->M_y += force[2];
+    response->plane.D11 += ratio * f->EA;
+    response->plane.D12 += ratio * f->ES;
+    response->plane.D22 += ratio * f->EI;
+    response->D1y += ratio * f->ES_y;
+    response->D2y += ratio * f->EI_yz;
+    response->Dyy += ratio * f->EI_y;
+}
+
+static void add_maxwell_in_space(const struct wb_fibres *f, struct strains at, const double *before,
+                                 double *after, struct wb_fibres_space_response *response)
+{
+    const struct strains change = {at.eps - before[HISTORY_EPS], at.kappa - before[HISTORY_KAPPA],
+                                   at.kappa_y - before[HISTORY_KAPPA_Y], 0.0};
+    after[HISTORY_EPS] = at.eps;
+    after[HISTORY_KAPPA] = at.kappa;
+    after[HISTORY_KAPPA_Y] = at.kappa_y;
+    for (int i = 0; i < f->law.n_maxwell; i++) {
+        const int row = HISTORY_MAXWELL + 2 * i, row_y = HISTORY_MAXWELL_Y + i;
+        const double decay = f->maxwell[i].decay;
+        double force[3] = {decay * before[row], decay * before[row + 1], decay * before[row_y]};
+        add_elastic_in_space(f, f->maxwell[i].tangent / f->materials[0].youngs_modulus, change,
+                             force, response);
+        after[row] = force[0];
+        after[row + 1] = force[1];
+        after[row_y] = force[2];
+    }
+}
+
+void wb_fibres_respond_in_space(const struct wb_fibres *f, double eps, double kappa_y,
+                                double kappa_z, const double *restrict before,
+                                double *restrict after,
+                                struct wb_fibres_space_response *restrict response)
+{
+    const bool yielded = before[0] != 0.0;
+    const struct strains strains = {eps, kappa_z, kappa_y,
+                                    fabs(eps) + f->outermost * hypot(kappa_y, kappa_z)};
+
+    if (!yielded && strains.largest <= f->yield_strain) {
+        double force[3] = {0};
+        after[0] = 0.0;
+        *response = (struct wb_fibres_space_response){{0}, 0.0, 0.0, 0.0, 0.0};
+        add_elastic_in_space(f, 1.0, strains, force, response);
+    } else {
+        after[0] = 1.0;
+        f->respond_in_space(f, strains, yielded ? before : f->virgin, after, response);
+    }
+    if (f->law.n_maxwell > 0)
+        add_maxwell_in_space(f, strains, before, after, response);
 }
 
 double wb_fibres_largest_plastic_strain(const struct wb_fibres *f, const double *history)

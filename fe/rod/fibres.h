@@ -21,6 +21,14 @@ struct wb_fibres_response {
     double D11, D12, D22; /* dN/d(eps), dN/d(kappa) = dM/d(eps), dM/d(kappa) */
 };
 
+/* The same in space, where a fibre's strain is eps - y kappa_z + z kappa_y: `plane` is of eps and
+ * kappa_z, M_y = sum s A z, and the stiffnesses are dN, dM, dM_y over d(kappa_y). */
+struct wb_fibres_space_response {
+    struct wb_fibres_response plane;
+    double M_y;           /* N m */
+    double D1y, D2y, Dyy; /* N m, N m2, N m2 */
+};
+
 struct wb_fibres; /* opaque */
 
 /* Sorts the section's fibres by material and tabulates its laws; does not keep a pointer to the
@@ -55,5 +63,12 @@ double wb_fibres_shear_stiffness(const struct wb_fibres *fibres);
 void wb_fibres_respond(const struct wb_fibres *fibres, double eps, double kappa,
                        const double *restrict before, double *restrict after,
                        struct wb_fibres_response *restrict response);
+
+/* The same in space, for a section without point laws. A history belongs to one of the two
+ * functions. */
+void wb_fibres_respond_in_space(const struct wb_fibres *fibres, double eps, double kappa_y,
+                                double kappa_z, const double *restrict before,
+                                double *restrict after,
+                                struct wb_fibres_space_response *restrict response);
 
 #endif

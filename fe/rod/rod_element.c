@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/vec3.h"
-#include "fe/rod/rod_element_private.h"
 
 enum {
     NODES = WB_ROD_ELEMENT_NODES,
@@ -62,6 +61,19 @@ void wb_rod_element_exponential(const double vector[3], double q[4])
     q[0] = cos(half);
     for (int i = 0; i < 3; i++)
         q[i + 1] = 0.5 * ratio * vector[i];
+}
+
+void wb_rod_element_turn_between(const double from[4], const double to[4], double vector[3])
+{
+    const double back[4] = {from[0], -from[1], -from[2], -from[3]};
+    double q[4];
+    wb_rod_element_compose(to, back, q);
+    const double sign = q[0] < 0.0 ? -1.0 : 1.0;
+    const double size = wb_vec3_length(q + 1);
+    /* 2 atan(size / q0) / size, with its limit. */
+    const double ratio = size < 1e-9 ? 2.0 : 2.0 * atan2(size, sign * q[0]) / size;
+    for (int i = 0; i < 3; i++)
+        vector[i] = sign * ratio * q[i + 1];
 }
 
 /* The line k = a + b s through the curvatures of the points. */

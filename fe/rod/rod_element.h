@@ -91,4 +91,10 @@ void wb_rod_element_strain_increment(const struct wb_rod_shape *shape, int g,
 /* Rotation matrix (row-major) of a unit quaternion. */
 void wb_rod_element_matrix(const double q[4], double R[9]);
 
+/* Product c = a b of unit quaternions, the quaternion of a rotation vector, and the rotation vector
+ * in space that turns `from` to `to`, at most pi long. */
+void wb_rod_element_compose(const double a[4], const double b[4], double c[4]);
+void wb_rod_element_exponential(const double vector[3], double q[4]);
+void wb_rod_element_turn_between(const double from[4], const double to[4], double vector[3]);
+
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "fe/rod/ring.h"
 #include "fe/rod/rod_fibre.h"
 #include "fe/rod/section.h"
 
@@ -14,8 +15,6 @@ enum {
     DEFAULT_RINGS = 8,
     DEFAULT_AROUND = 24,
     MAX_PARTS = 16,
-    MAX_RINGS = 64,
-    MAX_AROUND = 256,
     HISTORY_HEAD =
         MAX_PARTS,    /* one double for each part: 1 if the part ever yielded at this point */
     HISTORY_ROWS = 4, /* plastic, plastic_shear, accumulated, yield of each fibre of a part */
@@ -42,55 +41,16 @@ struct wb_rod_section {
     struct wb_memory memory; /* of all arrays */
 };
 
-/* Gauss-Legendre points and weights of [0, 1], by Newton's method on the Legendre polynomials. */
-static void gauss_rule(int n, double *point, double *weight)
-{
-    for (int i = 0; i < n; i++) {
-        double x = cos(M_PI * (n - i - 0.25) / (n + 0.5)), slope = 1.0;
-        for (int iteration = 0; iteration < 20; iteration++) {
-            double p = 1.0, before = 0.0;
-            for (int k = 1; k <= n; k++) {
-                const double next = ((2 * k - 1) * x * p - (k - 1) * before) / k;
-                before = p;
-                p = next;
-            }
-            slope = n * (x * p - before) / (x * x - 1.0);
-            const double step = p / slope;
-            x -= step;
-            if (fabs(step) < 1e-15)
-                break;
-        }
-        point[i] = 0.5 * (1.0 + x);
-        weight[i] = 1.0 / ((1.0 - x * x) * slope * slope);
-    }
-}
-
-/* Direction of fibre i of a ring, which may be turned by half the spacing; mirrored from the first
- * octant so that the ring is symmetric to the last bit. */
-static void direction(int i, int n_around, bool turned, double *c, double *s)
-{
-    const int halves = 2 * n_around; /* in half spaces */
-    const int at = (2 * i + (turned ? 1 : 0)) % halves;
-    const int quarter = halves / 4;
-    const int quadrant = at / quarter, within = at % quarter;
-    const bool beyond = 2 * within > quarter;
-    const double angle = 2.0 * M_PI * (beyond ? quarter - within : within) / halves;
-    const double a = beyond ? sin(angle) : cos(angle), b = beyond ? cos(angle) : sin(angle);
-
-    *c = quadrant == 0 ? a : quadrant == 1 ? -b : quadrant == 2 ? -a : b;
-    *s = quadrant == 0 ? b : quadrant == 1 ? a : quadrant == 2 ? -b : -a;
-}
-
 static void fill_part(struct wb_rod_section *section, int part, double Ri, double Ro)
 {
-    double point[MAX_RINGS], weight[MAX_RINGS];
+    double point[WB_RING_MOST], weight[WB_RING_MOST];
     const int n_rings = section->n_rings, n_around = section->n_around;
     const double squares = Ro * Ro - Ri * Ri;
     double *radius = section->radius + part * n_rings;
     double *edge = section->edge + part * (n_rings + 1);
     double covered = 0.0;
 
-    gauss_rule(n_rings, point, weight);
+    wb_ring_rule(n_rings, point, weight);
     edge[0] = Ri;
     for (int ring = 0; ring < n_rings; ring++) {
         covered += weight[ring];
@@ -99,7 +59,7 @@ static void fill_part(struct wb_rod_section *section, int part, double Ri, doubl
         for (int i = 0; i < n_around; i++) {
             const int at = (part * n_rings + ring) * n_around + i;
             double c, s;
-            direction(i, n_around, ring % 2 == 1, &c, &s);
+            wb_ring_direction(i, n_around, ring % 2 == 1, &c, &s);
             section->y[at] = radius[ring] * c;
             section->z[at] = radius[ring] * s;
             section->area[at] = M_PI * squares * weight[ring] / n_around;
@@ -135,13 +95,7 @@ static enum wb_status check_parts(int n_parts, const struct wb_rod_section_part 
     if (n_parts < 1 || n_parts > MAX_PARTS)
         return wb_fail(WB_ERR_ARGUMENT, "%d parts of a section: expected 1 to %d", n_parts,
                        MAX_PARTS);
-    if (layout->n_rings < 1 || layout->n_rings > MAX_RINGS)
-        return wb_fail(WB_ERR_ARGUMENT, "%d rings of fibres: expected 1 to %d", layout->n_rings,
-                       MAX_RINGS);
-    if (layout->n_around < 4 || layout->n_around > MAX_AROUND || layout->n_around % 4 != 0)
-        return wb_fail(WB_ERR_ARGUMENT,
-                       "%d fibres in a ring: expected a multiple of 4 from 4 to %d",
-                       layout->n_around, MAX_AROUND);
+    WB_TRY(wb_ring_check(layout->n_rings, layout->n_around));
     for (int i = 0; i < n_parts; i++) {
         const struct wb_rod_section_part *p = &parts[i];
         if (!(isfinite(p->outer_diameter) && p->inner_diameter >= 0.0 &&
@@ -327,7 +281,7 @@ static bool stays_elastic(const struct wb_rod_section *section, int part, const 
 struct ring {
     int first; /* fibre, of all */
     double radius, area;
-    double axial[MAX_AROUND], shear[MAX_AROUND], beyond[MAX_AROUND];
+    double axial[WB_RING_MOST_AROUND], shear[WB_RING_MOST_AROUND], beyond[WB_RING_MOST_AROUND];
 };
 
 /* Trial stresses of one ring. Elastic fibres spend most of their time

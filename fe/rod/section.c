@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "fe/material/hardening.h"
+#include "fe/rod/ring.h"
 
 #define WB_LOG_DOMAIN "section"
 
@@ -134,6 +135,7 @@ enum wb_status wb_section_add_ring(struct wb_section *section, double inner_diam
 
     double area = 0.0;
     for (int i = 0; i < count; i++) {
+        fibres[i].z = 0.0;
         fibres[i].material = index;
         fibres[i].area *= area_fraction;
         area += fibres[i].area;
@@ -149,14 +151,49 @@ enum wb_status wb_section_init_circle(struct wb_section *section, double diamete
     return wb_section_add_ring(section, 0.0, diameter, material, 1.0, n);
 }
 
+static void add_law(struct wb_section *section, const struct wb_law *law)
+{
+    section->law = wb_memory_new(1, sizeof *section->law);
+    *section->law = *law;
+}
+
 enum wb_status wb_section_init_law(struct wb_section *section, double diameter,
                                    const struct wb_law *law, int n)
 {
     wb_section_init_empty(section);
     WB_TRY(wb_law_check(law, NULL));
     WB_TRY(wb_section_init_circle(section, diameter, &law->material, n));
-    section->law = wb_memory_new(1, sizeof *section->law);
-    *section->law = *law;
+    add_law(section, law);
+    return WB_OK;
+}
+
+enum wb_status wb_section_init_law_in_space(struct wb_section *section, double diameter,
+                                            const struct wb_law *law, int n_rings, int n_around)
+{
+    double point[WB_RING_MOST], weight[WB_RING_MOST];
+    const double R = 0.5 * diameter;
+
+    wb_section_init_empty(section);
+    WB_TRY(wb_law_check(law, NULL));
+    WB_TRY(wb_section_check_material(&law->material));
+    if (!(isfinite(diameter) && diameter > 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "diameter %g m: expected a number above 0", diameter);
+    WB_TRY(wb_ring_check(n_rings, n_around));
+
+    struct wb_fibre *fibre = grow(section, &law->material, n_rings * n_around);
+    wb_ring_rule(n_rings, point, weight);
+    for (int ring = 0; ring < n_rings; ring++) {
+        for (int i = 0; i < n_around; i++, fibre++) {
+            double c, s;
+            wb_ring_direction(i, n_around, ring % 2 == 1, &c, &s);
+            fibre->y = R * sqrt(point[ring]) * c;
+            fibre->z = R * sqrt(point[ring]) * s;
+            fibre->area = M_PI * R * R * weight[ring] / n_around;
+            fibre->material = 0;
+        }
+    }
+    section->shear_stiffness = wb_section_shear_modulus(&law->material) * M_PI * R * R;
+    add_law(section, law);
     return WB_OK;
 }
 

@@ -16,6 +16,7 @@ struct wb_fibre {
     double y;     /* m, offset from the axis; a fibre's strain is eps - y kappa */
     double area;  /* m2 */
     int material; /* index into the section's materials */
+    double z;     /* m, the other offset; counts in space only */
 };
 
 /* A stress-strain law for wires that the laws of fe/material/hardening.h cannot describe, such as
@@ -50,6 +51,11 @@ WB_MUST_CHECK enum wb_status wb_section_init_circle(struct wb_section *section, 
 /* Solid circle of a law with n strips (0: 20); WB_ERR_ARGUMENT for an invalid law. */
 WB_MUST_CHECK enum wb_status wb_section_init_law(struct wb_section *section, double diameter,
                                                  const struct wb_law *law, int n);
+
+/* The same for a rod in space: fibres in `n_rings` rings of `n_around` (a multiple of 4) fibres. */
+WB_MUST_CHECK enum wb_status wb_section_init_law_in_space(struct wb_section *section,
+                                                          double diameter, const struct wb_law *law,
+                                                          int n_rings, int n_around);
 
 /* An empty section for wb_section_add_ring(); each part adds to the shear stiffness. */
 void wb_section_init_empty(struct wb_section *section);

@@ -2,7 +2,7 @@
 #include "fe/rod/rod.h"
 
 #include "fe/linear/banded.h"
-#include "fe/rod/rod_element_private.h"
+#include "fe/rod/rod_element.h"
 #include "fe/rod/rod_private.h"
 #include "tests/fe/rod/rods.h"
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "base/json.h"
-#include "fe/rod/rod_element_private.h"
+#include "fe/rod/rod_element.h"
 #include "fe/rod/rod_private.h"
 #include "tests/fe/rod/rod_energy.h"
 #include "tests/fe/rod/rods.h"
