@@ -71,8 +71,8 @@ rooms() { # FOLDER ROOM...
     done
 }
 rooms daq stream protocol take recording acquire test doctor
-rooms fe team linear material swept solid model rod trial section bundle output
-rooms analysis keys dataset align import calibration cards validation plot predict compare solve jobs report schema
+rooms fe team linear material swept solid model rod trial section bundle harness output
+rooms analysis keys dataset align import calibration cards validation plot predict compare harness solve jobs report schema
 rooms analysis/calibration law paper cycle three_point constituents properties
 rooms analysis/report draw bench wires bundles machines predictions kinds
 # The common files of reports include no kind of report, and no kind includes another kind; only
