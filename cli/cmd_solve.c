@@ -17,6 +17,7 @@
 #include "cli/finding.h"
 #include "cli/print.h"
 #include "cli/settings.h"
+#include "cli/solve_harness.h"
 
 #define WB_LOG_DOMAIN "solve"
 
@@ -45,6 +46,10 @@ static const struct kind {
     {"WIRE.yaml --span-mm=L --deflection-mm=D",
      "Computes a wire (fixtures/wires, by name or path) in three-point bending on round rollers.",
      "wires"},
+    {"HARNESS.yaml",
+     "Computes a harness file (fixtures/harnesses, by name or path): branches, connectors, clips "
+     "and the steps of an assembly.",
+     "harnesses"},
 };
 
 static const struct wb_settings_source sources[] = {
@@ -87,9 +92,10 @@ static void take_argument(struct argp_state *state, const char *argument,
         argp_error(state, "one model at a time: unexpected argument '%s'", argument);
     const int kind = find_kind(argument);
     if (kind < 0) {
-        argp_error(state,
-                   "unknown model '%s': expected cantilever, wire3d, wire1d, bundle or bending3p",
-                   argument);
+        argp_error(
+            state,
+            "unknown model '%s': expected cantilever, wire3d, wire1d, bundle, bending3p or harness",
+            argument);
         return;
     }
     s->kind = 1U << kind;
@@ -98,7 +104,8 @@ static void take_argument(struct argp_state *state, const char *argument,
 static void check(struct argp_state *state, const struct wb_solve_settings *s)
 {
     if (s->kind == 0)
-        argp_error(state, "model missing: cantilever, wire3d, wire1d, bundle or bending3p");
+        argp_error(state,
+                   "model missing: cantilever, wire3d, wire1d, bundle, bending3p or harness");
     if (s->vtk_every > 0 && !s->vtk)
         argp_error(state, "--vtk-every needs --vtk");
     if (s->sweep && !s->uncertain)
@@ -106,9 +113,8 @@ static void check(struct argp_state *state, const struct wb_solve_settings *s)
     if (s->checkpoint_interval > 0.0 && !s->checkpoint)
         argp_error(state, "--checkpoint-minutes needs --checkpoint");
     if (s->kind != WB_SOLVE_CANTILEVER && !s->model)
-        argp_error(state, "the %s file is missing: %s %s.yaml",
-                   s->kind == WB_SOLVE_THREE_POINT ? "wire's" : "model", wb_solve_settings_kind(s),
-                   s->kind == WB_SOLVE_THREE_POINT ? "WIRE" : "MODEL");
+        argp_error(state, "the file is missing: %s %s", wb_solve_settings_kind(s),
+                   kinds[find_kind(wb_solve_settings_kind(s))].arguments);
     if (s->kind == WB_SOLVE_THREE_POINT && (s->span == 0.0 || s->deflection == 0.0))
         argp_error(state, "--span-mm and --deflection-mm are required");
     if (s->kind == WB_SOLVE_CANTILEVER && (!s->wire || s->length == 0.0 || s->deflection == 0.0))
@@ -366,6 +372,8 @@ int wb_cmd_solve(int argc, char **argv)
     wb_setting_fill(&wb_solve_settings_table, &options.settings);
     parse_options(argc, argv, &options);
     wb_interrupt_install();
+    if (options.settings.kind == WB_SOLVE_HARNESS)
+        return wb_solve_harness(&options.common, &options.settings);
     if (check_model(&options.settings) != WB_OK)
         return WB_EXIT_FAILED;
     /* In the way of a dataset, the message of wb_solve_run() is the better one. */

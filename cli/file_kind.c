@@ -47,6 +47,7 @@ static const struct {
                           "--conductor-diameter-mm D"},
     [WB_FILE_MODEL] = {"model", "a model file", "wirebench solve wire1d %s -o DATASET"},
     [WB_FILE_BUNDLE] = {"bundle", "a bundle file", "wirebench solve bundle %s -o DATASET"},
+    [WB_FILE_HARNESS] = {"harness", "a harness file", "wirebench solve harness %s -o DIR"},
     [WB_FILE_MACHINE] = {"machine", "a machine file",
                          "wirebench import force FILE --specimen SPECIMEN.yaml --machine %s -o "
                          "DATASET"},
@@ -78,6 +79,8 @@ static const struct {
          "describes its keys"},
     [WB_FILE_VALIDATION] = {"validation", "the results of wirebench validate",
                             "open its figures; scores.csv has the errors and bounds"},
+    [WB_FILE_HARNESS_RESULT] = {"harness_result", "the results of wirebench solve harness",
+                                "open shapes.csv or forces.csv in it, its tables"},
     [WB_FILE_CHECK_LOG] = {"check_log", "a log of load-cell checks",
                            "wirebench stage RIG.yaml check MASS, which adds a line"},
     [WB_FILE_CARD] = {"card", "a card, the input of another program",
@@ -122,6 +125,8 @@ static enum wb_file_kind find_folder(const char *folder)
         return WB_FILE_REPORT;
     if (holds(folder, "scores.csv"))
         return WB_FILE_VALIDATION;
+    if (holds(folder, "harness.json"))
+        return WB_FILE_HARNESS_RESULT;
     DIR *const listing = opendir(folder);
     for (const struct dirent *entry; listing && (entry = readdir(listing));) {
         char path[WB_PATH];
@@ -143,16 +148,19 @@ static enum wb_file_kind find_part(const char *path)
 {
     char folder[WB_PATH];
     wb_file_folder(folder, path);
-    return holds(folder, "dataset.json") ? WB_FILE_PART_OF_DATASET
-           : holds(folder, "scores.csv") ? WB_FILE_VALIDATION
-                                         : WB_FILE_UNKNOWN;
+    return holds(folder, "dataset.json")   ? WB_FILE_PART_OF_DATASET
+           : holds(folder, "scores.csv")   ? WB_FILE_VALIDATION
+           : holds(folder, "harness.json") ? WB_FILE_HARNESS_RESULT
+                                           : WB_FILE_UNKNOWN;
 }
 
 /* --- YAML files, by their keys --- */
 
-/* `kind` is the value of that key: of a machine, or of a campaign. */
+/* `kind` is the value of that key: of a harness, of a machine, or of a campaign. */
 static enum wb_file_kind find_by_kind(const char *kind)
 {
+    if (strcmp(kind, "harness") == 0)
+        return WB_FILE_HARNESS;
     static const enum wb_test_kind tests[] = {WB_TEST_CANTILEVER, WB_TEST_THREE_POINT,
                                               WB_TEST_TENSILE};
     for (size_t i = 0; i < WB_COUNT(tests); i++) {

@@ -22,6 +22,7 @@ enum wb_file_kind {
     WB_FILE_MATERIAL,
     WB_FILE_MODEL,
     WB_FILE_BUNDLE,
+    WB_FILE_HARNESS,
     WB_FILE_MACHINE,
     WB_FILE_CAMPAIGN,
     WB_FILE_SERIES,
@@ -35,6 +36,7 @@ enum wb_file_kind {
     WB_FILE_REPORT_NUMBERS,  /* report.json */
     WB_FILE_MANIFEST,        /* of a report */
     WB_FILE_VALIDATION,      /* the folder of `validate -o`, or a file in it */
+    WB_FILE_HARNESS_RESULT,  /* the folder of `solve harness -o`, or a file in it */
     WB_FILE_CHECK_LOG,       /* of load-cell checks */
     WB_FILE_CARD,
     WB_FILE_CHECKPOINT,

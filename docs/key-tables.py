@@ -15,7 +15,7 @@ INTRODUCTION = """\
 
 [File formats](file-formats.md) explains these files; this page lists every key. It is generated from the tables of keys
 in `analysis/`, as are the JSON Schemas (draft 2020-12) in `share/wirebench/schemas/`, which
-`wirebench info --schema dataset`, `report`, `manifest` or `properties` prints, too. The schemas reject unknown keys. A
+`wirebench info --schema dataset`, `report`, `manifest`, `properties` or `harness` prints, too. The schemas reject unknown keys. A
 program that is to read files of later versions should ignore unknown keys instead, because later versions add keys
 ([versions](versions.md#what-a-version-number-promises)).
 

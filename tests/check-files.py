@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks files that wirebench wrote against the JSON Schemas: each dataset.json, report.json,
-manifest.json and properties file (.yaml) of the given files and folders. Unknown and missing keys
+manifest.json, harness.json and properties file (.yaml) of the given files and folders. Unknown and missing keys
 are errors. Usage: check-files.py SCHEMAS [-n LEAST] PATH..."""
 
 import json
@@ -11,7 +11,8 @@ import sys
 import jsonschema
 import yaml
 
-NAMES = {"dataset.json": "dataset", "report.json": "report", "manifest.json": "manifest"}
+NAMES = {"dataset.json": "dataset", "report.json": "report", "manifest.json": "manifest",
+         "harness.json": "harness"}
 
 
 class Loader(yaml.SafeLoader):

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "analysis/calibration/properties/quantity.h"
+#include "analysis/harness/harness_output.h"
 #include "analysis/schema/tables.h"
 
 const struct wb_schema_document wb_schema_documents[WB_SCHEMA_DOCUMENTS] = {
@@ -12,6 +13,7 @@ const struct wb_schema_document wb_schema_documents[WB_SCHEMA_DOCUMENTS] = {
     {"manifest", "manifest.json of wirebench", &wb_schema_manifest_keys},
     {"properties", "properties file of wirebench, its YAML read as JSON",
      &wb_schema_properties_keys},
+    {"harness", "harness.json of wirebench", &wb_harness_output_keys},
 };
 
 const struct wb_schema_document *wb_schema_find(const char *name)

@@ -8,7 +8,7 @@
 #include "base/units.h"
 
 const char *const wb_solve_settings_kinds[WB_SOLVE_KINDS + 1] = {
-    "cantilever", "wire3d", "wire1d", "bundle", "bending3p", NULL};
+    "cantilever", "wire3d", "wire1d", "bundle", "bending3p", "harness", NULL};
 
 static const char *const laws[] = {
     [WB_SOLVE_ELASTOPLASTIC] = "elastoplastic", [WB_SOLVE_ELASTIC] = "elastic", NULL};
@@ -31,7 +31,7 @@ static const struct wb_setting rows[] = {
      .required = true, .applies = WB_SOLVE_CANTILEVER | WB_SOLVE_THREE_POINT},
     {WB_ROW_CHOICE(wb_solve_settings, law, "law", laws, 0),
      WB_ROW_OPTION("law", "LAW", "Law of the material"),
-     .applies = WB_SOLVE_CANTILEVER | WB_SOLVE_THREE_POINT},
+     .applies = WB_SOLVE_CANTILEVER | WB_SOLVE_THREE_POINT | WB_SOLVE_HARNESS},
     {WB_ROW_QUANTITY(wb_solve_settings, strand, "strand_mm", "mm", WB_MM, 1e-3, 1e9, 0.0),
      WB_ROW_OPTION(
          "strand-mm", "S",

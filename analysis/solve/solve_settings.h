@@ -15,11 +15,12 @@ enum {
     WB_SOLVE_WIRE1D = 4,
     WB_SOLVE_BUNDLE = 8,
     WB_SOLVE_THREE_POINT = 16,
-    WB_SOLVE_KINDS = 5 /* number of kinds */
+    WB_SOLVE_HARNESS = 32, /* not of wb_solve_run() but of analysis/harness */
+    WB_SOLVE_KINDS = 6     /* number of kinds */
 };
 
-/* Their names by bit, NULL-terminated: "cantilever", "wire3d", "wire1d", "bundle",
- * "bending3p". */
+/* Their names by bit, NULL-terminated: "cantilever", "wire3d", "wire1d", "bundle", "bending3p",
+ * "harness". */
 extern const char *const wb_solve_settings_kinds[WB_SOLVE_KINDS + 1];
 
 /* Models of a bundle. */

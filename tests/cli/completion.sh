@@ -36,7 +36,7 @@ expect '' "$commands
 --help
 --version"
 expect 'cali' calibrate
-kinds=(cantilever wire3d wire1d bundle bending3p)
+kinds=(cantilever wire3d wire1d bundle bending3p harness)
 expect 'solve ' "${kinds[*]}"
 expect 'import ' 'force mocap'
 for command in $commands; do

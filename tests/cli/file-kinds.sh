@@ -41,6 +41,7 @@ kind wire "$fixtures"/wires/*.yaml
 kind material "$fixtures"/materials/*.yaml "$fixtures"/formats/*/material*.yaml
 kind model "$fixtures"/models/*.yaml
 kind bundle "$fixtures"/bundles/7-type3.yaml "$fixtures"/bundles/template.yaml "$fixtures"/formats/*/bundle.yaml
+kind harness "$fixtures"/harnesses/*.yaml
 kind machine "$fixtures"/machines/*.yaml
 kind campaign "$fixtures"/campaigns/*.yaml "$fixtures"/formats/*/campaign-*.yaml
 kind properties "$fixtures"/formats/*/properties-*.yaml "$root/docs/cards/type1.yaml"

@@ -293,8 +293,8 @@ static void bad_input_gives_one_message_and_its_exit_code(void **unused)
 {
     (void)unused;
     static const struct refused cases[] = {
-        {"solve wire3d", "model file is missing: wire3d MODEL.yaml", 2},
-        {"solve wire1d", "model file is missing: wire1d MODEL.yaml", 2},
+        {"solve wire3d", "file is missing: wire3d MODEL.yaml", 2},
+        {"solve wire1d", "file is missing: wire1d MODEL.yaml", 2},
         {"solve wire2d kept.yaml", "'wire2d'", 2},
         {"solve wire3d kept.yaml kept.yaml", "one model at a time", 2},
         {"solve wire3d kept.yaml --points 5", "--points applies to cantilever", 2},

@@ -1,0 +1,133 @@
+/* Harness files (`kind: harness`): wires, branches in a tree, connectors, clips, and the steps of
+ * an assembly.
+ *
+ *     kind: harness
+ *     name: small
+ *     title: A trunk with two leads   # optional
+ *     gravity_m_s2: [0, 0, -9.80665]  # optional
+ *     wires:
+ *       - {name: trunk, wire: bundle-7}
+ *       - {name: lead, wire: type3, torsional_stiffness_N_mm2: 600}
+ *     root: {name: R, at_mm: [0, 0, 0], direction: [1, 0, 0], up: [0, 0, 1]}
+ *     branches:
+ *       - {name: B1, from: R, to: J, wire: trunk, length_mm: 300}
+ *       - {name: B2, from: J, to: K1, wire: lead, length_mm: 200, angle_deg: 40, around_deg: 90}
+ *     connectors:
+ *       - {name: K1, mass_g: 12, centre_mm: [15, 0, 0]}   # at the end of the branch to K1
+ *     clips:
+ *       - {name: C1, branch: B1, at_mm: 150, holds: axis}
+ *     steps:
+ *       - hang
+ *       - {mount: C1, at_mm: [140, 20, 10], direction: [1, 0.1, 0]}
+ *       - {move: C1, at_mm: [150, 0, 0]}
+ *       - {release: C1}
+ *       - take_off
+ *
+ * A wire is a wire file, a shipped wire, or a properties file. A branch begins with the axis of the
+ * branch before it, or of the root, turned by `angle_deg` towards `around_deg`: the direction
+ * around that axis, from `up` on. Its natural shape is straight, or has the curvatures about its y
+ * and z axes, constant or between places. The frame of a wire's section: x along the wire, z up, y
+ * = z x x.
+ */
+#ifndef WB_ANALYSIS_HARNESS_HARNESS_FILE_H
+#define WB_ANALYSIS_HARNESS_HARNESS_FILE_H
+
+#include <stdbool.h>
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/status.h"
+#include "fe/harness/harness.h"
+#include "fe/material/law.h"
+
+enum {
+    WB_HARNESS_MOST_WIRES = 32,
+    WB_HARNESS_MOST_BRANCHES = 100,
+    WB_HARNESS_MOST_ITEMS = 201, /* the root, connectors and clips */
+    WB_HARNESS_MOST_STEPS = 500,
+    WB_HARNESS_MOST_CURVE = 50, /* places of a natural shape */
+    WB_HARNESS_NAME = 40
+};
+
+struct wb_harness_wire {
+    char name[WB_HARNESS_NAME];
+    char file[96]; /* name of its file, without folders */
+    char sha256[WB_SHA256_TEXT];
+    double diameter; /* m */
+    double mass;     /* kg/m */
+    struct wb_law law;
+    double torsional_stiffness; /* N m2; 0: EI / (1 + nu) */
+    double largest_curvature;   /* 1/m, of the calibration; NAN: not known */
+    bool has_unloading;         /* calibrated on unloading, too */
+    bool is_virtual;            /* on a virtual rig */
+};
+
+struct wb_harness_plan_branch {
+    char name[WB_HARNESS_NAME], from[WB_HARNESS_NAME], to[WB_HARNESS_NAME];
+    int wire;
+    int parent;                                 /* branch; -1: the root */
+    double length;                              /* m */
+    double leaving[4];                          /* unit quaternion */
+    int n_curve;                                /* 0: straight */
+    double place[WB_HARNESS_MOST_CURVE];        /* m, ascending */
+    double curvature[WB_HARNESS_MOST_CURVE][2]; /* about y, z, 1/m */
+    double least_radius;                        /* limit, m; 0: none */
+};
+
+enum wb_harness_item_kind {
+    WB_HARNESS_ROOT,
+    WB_HARNESS_CONNECTOR,
+    WB_HARNESS_CLIP
+};
+
+/* What can be mounted. Item 0 is the root. */
+struct wb_harness_item {
+    char name[WB_HARNESS_NAME];
+    enum wb_harness_item_kind kind;
+    int branch; /* -1: the root */
+    double at;  /* m, along the branch */
+    enum wb_harness_hold hold;
+    double mass, centre[3];               /* kg, m; of a connector */
+    double largest_force, largest_moment; /* limits, N, N m; 0: none */
+};
+
+enum wb_harness_step_kind {
+    WB_HARNESS_HANG,
+    WB_HARNESS_MOUNT,
+    WB_HARNESS_MOVE,
+    WB_HARNESS_RELEASE,
+    WB_HARNESS_TAKE_OFF
+};
+
+struct wb_harness_step {
+    enum wb_harness_step_kind kind;
+    int item;
+    double position[3]; /* m */
+    bool has_direction, has_up;
+    double direction[3], up[3]; /* unit vectors */
+    char name[100];             /* "mount C1" */
+};
+
+struct wb_harness_plan {
+    char path[WB_PATH];
+    char sha256[WB_SHA256_TEXT];
+    char name[WB_HARNESS_NAME], title[160];
+    double gravity[3];       /* m/s2 */
+    struct wb_rod_node root; /* position and rotation */
+    int n_wires, n_branches, n_items, n_steps;
+    struct wb_harness_wire wires[WB_HARNESS_MOST_WIRES];
+    struct wb_harness_plan_branch branches[WB_HARNESS_MOST_BRANCHES];
+    struct wb_harness_item items[WB_HARNESS_MOST_ITEMS];
+    struct wb_harness_step steps[WB_HARNESS_MOST_STEPS];
+};
+
+/* Reads a file and the files of its wires. Errors name file, line and key. The plan is large:
+ * allocate it. */
+WB_MUST_CHECK enum wb_status wb_harness_file_read(struct wb_harness_plan *plan, const char *path);
+
+/* The rotation of a section with an axis and, where `up` is not NULL, that direction upwards; else
+ * the shortest turn of `before`. */
+void wb_harness_file_rotation(const double direction[3], const double *up, const double before[4],
+                              double rotation[4]);
+
+#endif

@@ -1,0 +1,417 @@
+#include "analysis/harness/harness_output.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/dataset/csv_table.h"
+#include "analysis/harness/harness_output_private.h"
+#include "analysis/keys/common.h"
+#include "analysis/keys/row.h"
+#include "base/file.h"
+#include "base/units.h"
+
+#define FORCE(member) WB_AT(struct wb_harness_force, member)
+#define BRANCH(member) WB_AT(struct wb_harness_branch_result, member)
+#define STEP(member) WB_AT(struct wb_harness_step_result, member)
+#define SNAP(member) WB_AT(struct wb_harness_snap, member)
+#define WIRE(member) WB_AT(struct wb_harness_wire, member)
+#define PLAN(member) WB_AT(struct wb_harness_plan, member)
+
+/* Part of a force by which it must differ; forces below this part of the largest one on the way are
+ * as good as zero. */
+static const double twist_sensitive = 0.1, as_zero = 1e-3;
+
+bool wb_harness_output_is_twist_sensitive(const struct wb_harness_force *force)
+{
+    return fabs(force->soft_force - force->size) >
+           twist_sensitive * fmax(force->size, as_zero * force->largest);
+}
+
+/* --- harness.json --- */
+
+static const struct wb_key wire_rows[] = {
+    {"name", WIRE(name), "name in the harness"},
+    {"file", WIRE(file), "its file, without folders"},
+    {"sha256", WIRE(sha256), "checksum of the file"},
+    {"virtual_rig", WIRE(is_virtual), "calibrated on a virtual rig"},
+    {"outer_diameter_mm", WIRE(diameter), "outer diameter"},
+    {"mass_per_length_kg_m", WIRE(mass), "mass per length"},
+    {"largest_curvature_1_m", WIRE(largest_curvature) | UNKNOWN,
+     "largest curvature of the calibration; null: not known"},
+    {"has_unloading", WIRE(has_unloading), "calibrated on unloading, too"},
+    {"flexural_rigidity_N_mm2", NUMBER, "EI of the law at zero curvature"},
+    {"torsional_stiffness_N_mm2", NUMBER, "torsional stiffness GJ"},
+    {"torsional_stiffness_from", TEXT, "the harness file, or by default EI / (1 + nu)",
+     .choices = "file|default"},
+};
+static WB_KEYS(wire, "harness_wire", "A wire of a harness.");
+
+static const struct wb_key snap_rows[] = {
+    {"fraction", SNAP(fraction), "of the step"},
+    {"branch", TEXT, "branch that moved farthest; empty: the root"},
+    {"at_mm", NUMBER, "place there"},
+    {"distance_mm", SNAP(distance), "how far it moved"},
+};
+static WB_KEYS(snap, "harness_snap",
+               "A place where the equilibrium became unstable and the harness moved to another.");
+
+static const struct wb_key force_rows[] = {
+    {"name", TEXT, "root, connector or clip"},
+    {"force_N", FORCE(size), "force on the wire at the end of the step"},
+    {"moment_N_mm", FORCE(moment_size), "moment on the wire"},
+    {"force_vector_N", WB_FULL(struct wb_harness_force, force),
+     "the force along the wire, across and up, in the frame of the section there"},
+    {"moment_vector_N_mm", WB_FULL(struct wb_harness_force, moment), "the moment in that frame"},
+    {"largest_force_N", FORCE(largest), "largest force during the step"},
+    {"largest_moment_N_mm", FORCE(largest_moment), "largest moment during the step"},
+    {"exceeds_force", FORCE(exceeds_force), "the limit of the force was exceeded"},
+    {"exceeds_moment", FORCE(exceeds_moment), "the limit of the moment was exceeded"},
+    {"soft_torsion_force_N", FORCE(soft_force) | IF_KNOWN,
+     "force_N where torsional stiffnesses by default are a fifth of that"},
+    {"twist_sensitive", FLAG | OPTIONAL,
+     "that differs by more than 10 %: the force depends on a stiffness that is not measured"},
+};
+static WB_KEYS(force, "harness_force", "What holds the wire at a mounted item.");
+
+static const struct wb_key branch_rows[] = {
+    {"name", TEXT, "branch"},
+    {"least_radius_mm", BRANCH(least_radius) | UNKNOWN, "least bend radius; null: straight"},
+    {"at_mm", BRANCH(at), "where it is"},
+    {"largest_bending_1_m", BRANCH(largest_bending),
+     "largest curvature relative to the natural shape"},
+    {"largest_bending_so_far_1_m", BRANCH(largest_bending_so_far),
+     "the same, from the first step on"},
+    {"beyond_calibration", BRANCH(is_beyond), "more than the curvature of the calibration"},
+    {"exceeds_radius", BRANCH(exceeds_radius), "the radius was below its limit during the step"},
+};
+static WB_KEYS(branch, "harness_branch", "A branch at the end of a step.");
+
+static const struct wb_key step_rows[] = {
+    {"name", TEXT, "step"},
+    {"converged", FLAG, "it ended at an equilibrium"},
+    {"fraction", STEP(fraction), "of the step that was completed"},
+    {"problem", TEXT | OPTIONAL, "why it was not completed"},
+    {"branch", TEXT | OPTIONAL, "branch where no equilibrium was found"},
+    {"increments", STEP(increments), "number of increments"},
+    {"iterations", STEP(iterations), "number of Newton iterations"},
+    {"elastic_mJ", STEP(elastic),
+     "energy that the wires give back when they are unloaded elastically"},
+    {"plastic_mJ", STEP(plastic),
+     "plastic work from the first step on: dissipated, or kept by the hardening"},
+    {"snaps", OBJECT | LIST, "snaps during the step", &snap_keys},
+    {"forces", OBJECT | LIST, "forces on the mounted items", &force_keys},
+    {"branches", OBJECT | LIST, "branches", &branch_keys},
+};
+static WB_KEYS(step, "harness_step", "A step of the assembly.");
+
+static const struct wb_key residual_rows[] = {
+    {"distance_mm", NUMBER, "largest distance from the stress-free shape before"},
+    {"branch", TEXT, "where it is"},
+};
+static WB_KEYS(residual, "harness_residual", "The shape of the harness after it was taken off.");
+
+static const struct wb_key wb_harness_output_rows[] = {
+    {"tool", OBJECT, "the program", &wb_common_tool_keys},
+    {"kind", TEXT, "kind of file", .choices = "harness"},
+    {"name", PLAN(name), "name of the harness"},
+    {"title", PLAN(title) | OPTIONAL, "title"},
+    {"file_sha256", PLAN(sha256), "checksum of the harness file"},
+    {"law", TEXT, "whether the wires may yield", .choices = "elastoplastic|elastic"},
+    {"elements", INTEGER, "number of elements"},
+    {"weight_N", NUMBER, "weight of branches and connectors"},
+    {"converged", FLAG, "all steps were computed"},
+    {"wires", WB_POINTER(struct wb_harness_plan, wires, n_wires), "wires", &wire_keys},
+    {"steps", OBJECT | LIST, "steps", &step_keys},
+    {"residual_shape", OBJECT | OPTIONAL, "shape after the harness was taken off", &residual_keys},
+};
+WB_KEYS(wb_harness_output, "harness", "`wirebench solve harness`.");
+
+static const char *branch_name(const struct wb_harness_plan *plan, int branch)
+{
+    return branch < 0 ? "" : plan->branches[branch].name;
+}
+
+static void put_wires(struct wb_json *object, const struct wb_harness_result_set *set)
+{
+    struct wb_json *const list = wb_json_set_array(object, "wires");
+    for (int i = 0; i < set->plan->n_wires; i++) {
+        const struct wb_harness_wire *const wire = &set->plan->wires[i];
+        struct wb_json *const item = wb_json_append_object(list);
+        WB_PUT(item, &wire_keys, struct wb_harness_wire, wire);
+        wb_json_set_number(item, "flexural_rigidity_N_mm2",
+                           wire->law.material.youngs_modulus * M_PI * pow(wire->diameter, 4.0) /
+                               64.0 / WB_NMM2);
+        wb_json_set_number(item, "torsional_stiffness_N_mm2",
+                           wb_harness_run_torsion(set->plan, i, &set->settings) / WB_NMM2);
+        wb_json_set_text(item, "torsional_stiffness_from",
+                         wire->torsional_stiffness > 0.0 ? "file" : "default");
+    }
+}
+
+static void put_snaps(struct wb_json *object, const struct wb_harness_result_set *set,
+                      const struct wb_harness_step_result *step)
+{
+    struct wb_json *const list = wb_json_set_array(object, "snaps");
+    for (int i = 0; i < step->n_snaps; i++) {
+        const struct wb_harness_snap *const snap = &step->snaps[i];
+        struct wb_json *const item = wb_json_append_object(list);
+        WB_PUT(item, &snap_keys, struct wb_harness_snap, snap);
+        wb_json_set_text(item, "branch", branch_name(set->plan, step->snap_branch[i]));
+        wb_json_set_number(item, "at_mm", step->snap_at[i] / WB_MM);
+        WB_PUT(item, &snap_keys, struct wb_harness_snap, snap);
+    }
+}
+
+static void put_step(struct wb_json *list, const struct wb_harness_result_set *set, int index)
+{
+    const struct wb_harness_plan *const plan = set->plan;
+    const struct wb_harness_step_result *const step = &set->results[index];
+    struct wb_json *const object = wb_json_append_object(list);
+    wb_json_set_text(object, "name", plan->steps[index].name);
+    wb_json_set_boolean(object, "converged", step->end == WB_HARNESS_CONVERGED);
+    WB_PUT(object, &step_keys, struct wb_harness_step_result, step);
+    if (step->problem)
+        wb_json_set_text(object, "problem", step->problem);
+    if (step->worst_branch >= 0)
+        wb_json_set_text(object, "branch", branch_name(plan, step->worst_branch));
+    WB_PUT(object, &step_keys, struct wb_harness_step_result, step);
+    put_snaps(object, set, step);
+    struct wb_json *const forces = wb_json_set_array(object, "forces");
+    for (int i = 0; i < plan->n_items; i++) {
+        const struct wb_harness_force *const force = &step->forces[i];
+        if (!force->is_mounted)
+            continue;
+        struct wb_json *const item = wb_json_append_object(forces);
+        wb_json_set_text(item, "name", plan->items[i].name);
+        WB_PUT(item, &force_keys, struct wb_harness_force, force);
+        if (isfinite(force->soft_force))
+            wb_json_set_boolean(item, "twist_sensitive",
+                                wb_harness_output_is_twist_sensitive(force));
+    }
+    struct wb_json *const branches = wb_json_set_array(object, "branches");
+    for (int i = 0; i < plan->n_branches; i++) {
+        struct wb_json *const item = wb_json_append_object(branches);
+        wb_json_set_text(item, "name", plan->branches[i].name);
+        WB_PUT(item, &branch_keys, struct wb_harness_branch_result, &step->branches[i]);
+    }
+}
+
+/* The last step, if the harness was taken off; -1: it was not. */
+static int taken_off(const struct wb_harness_result_set *set)
+{
+    const int last = set->n_steps - 1;
+    return set->converged && set->plan->steps[last].kind == WB_HARNESS_TAKE_OFF ? last : -1;
+}
+
+void wb_harness_output_put(struct wb_json *object, const struct wb_harness_result_set *set)
+{
+    const struct wb_harness_plan *const plan = set->plan;
+    wb_keys_put_tool(object, "wirebench solve");
+    wb_json_set_text(object, "kind", "harness");
+    WB_PUT(object, &wb_harness_output_keys, struct wb_harness_plan, plan);
+    wb_json_set_text(object, "law", set->settings.is_elastic ? "elastic" : "elastoplastic");
+    wb_json_set_integer(object, "elements", set->n_elements);
+    wb_json_set_number(object, "weight_N", set->weight);
+    wb_json_set_boolean(object, "converged", set->converged);
+    put_wires(object, set);
+    struct wb_json *const steps = wb_json_set_array(object, "steps");
+    for (int i = 0; i < set->n_steps; i++)
+        put_step(steps, set, i);
+    const int last = taken_off(set);
+    if (last >= 0) {
+        int branch;
+        struct wb_json *const residual = wb_json_set_object(object, "residual_shape");
+        wb_json_set_number(residual, "distance_mm",
+                           wb_harness_run_distance(set, last, &branch) / WB_MM);
+        wb_json_set_text(residual, "branch", branch_name(plan, branch));
+    }
+}
+
+/* --- tables --- */
+
+struct column {
+    double value;
+    int shift; /* decimal digits to the file's unit */
+};
+
+static void append_row(struct wb_text *text, const char *step, const char *name,
+                       const struct column *columns, size_t n)
+{
+    wb_text_append(text, "%s,%s", step, name);
+    for (size_t i = 0; i < n; i++) {
+        wb_text_append(text, ",");
+        wb_csv_table_append_number(text, columns[i].value, columns[i].shift);
+    }
+    wb_text_append(text, "\n");
+}
+
+static void append_places(struct wb_text *text, const struct wb_harness_result_set *set,
+                          const char *step, const struct wb_harness_place *places)
+{
+    for (int i = 0; i < set->n_places; i++) {
+        const struct wb_harness_place *const p = &places[i];
+        const struct column columns[] = {
+            {p->s, 3},
+            {p->position[0], 3},
+            {p->position[1], 3},
+            {p->position[2], 3},
+            {p->direction[0], 0},
+            {p->direction[1], 0},
+            {p->direction[2], 0},
+            {p->curvature, 0},
+            {p->twist, 0},
+            {p->moment, 3},
+            {p->torque, 3},
+            {p->tension, 0},
+        };
+        append_row(text, step, set->plan->branches[p->branch].name, columns, WB_COUNT(columns));
+    }
+}
+
+static enum wb_status write_shapes(const struct wb_harness_result_set *set, const char *folder)
+{
+    static const char *const names[] = {
+        "step",      "branch",      "s_mm",        "x_mm",        "y_mm",
+        "z_mm",      "direction_x", "direction_y", "direction_z", "curvature_1_m",
+        "twist_1_m", "moment_N_mm", "torque_N_mm", "tension_N"};
+    struct wb_text text = {0};
+    wb_csv_table_append_header(&text, names, WB_COUNT(names));
+    append_places(&text, set, "natural", set->natural);
+    for (int i = 0; i < set->n_steps; i++) {
+        char step[16];
+        snprintf(step, sizeof step, "%d", i + 1);
+        append_places(&text, set, step, set->results[i].places);
+    }
+    const enum wb_status status = wb_csv_table_write(folder, "shapes.csv", &text);
+    wb_text_release(&text);
+    return status;
+}
+
+static enum wb_status write_forces(const struct wb_harness_result_set *set, const char *folder)
+{
+    static const char *const names[] = {"step",
+                                        "item",
+                                        "force_N",
+                                        "force_along_N",
+                                        "force_across_N",
+                                        "force_up_N",
+                                        "moment_N_mm",
+                                        "moment_along_N_mm",
+                                        "moment_across_N_mm",
+                                        "moment_up_N_mm",
+                                        "largest_force_N",
+                                        "largest_moment_N_mm"};
+    struct wb_text text = {0};
+    wb_csv_table_append_header(&text, names, WB_COUNT(names));
+    for (int i = 0; i < set->n_steps; i++) {
+        char step[16];
+        snprintf(step, sizeof step, "%d", i + 1);
+        for (int k = 0; k < set->plan->n_items; k++) {
+            const struct wb_harness_force *const f = &set->results[i].forces[k];
+            const struct column columns[] = {
+                {f->size, 0},        {f->force[0], 0},       {f->force[1], 0},  {f->force[2], 0},
+                {f->moment_size, 3}, {f->moment[0], 3},      {f->moment[1], 3}, {f->moment[2], 3},
+                {f->largest, 0},     {f->largest_moment, 3},
+            };
+            if (f->is_mounted)
+                append_row(&text, step, set->plan->items[k].name, columns, WB_COUNT(columns));
+        }
+    }
+    const enum wb_status status = wb_csv_table_write(folder, "forces.csv", &text);
+    wb_text_release(&text);
+    return status;
+}
+
+enum wb_status wb_harness_output_write(const struct wb_harness_result_set *set, const char *folder)
+{
+    char path[WB_PATH];
+    WB_TRY(write_shapes(set, folder));
+    WB_TRY(write_forces(set, folder));
+    WB_TRY(wb_file_join(path, folder, "harness.json"));
+    struct wb_json *const root = wb_json_create();
+    wb_harness_output_put(root, set);
+    char *const text = wb_json_format(root);
+    wb_json_destroy(root);
+    const enum wb_status status = wb_file_write(path, text, strlen(text));
+    free(text);
+    return status;
+}
+
+/* --- the terminal --- */
+
+void wb_harness_output_append_table(struct wb_text *text, const struct wb_harness_result_set *set)
+{
+    const struct wb_harness_plan *const plan = set->plan;
+    for (int i = 0; i < set->n_steps; i++) {
+        const struct wb_harness_step_result *const step = &set->results[i];
+        int tightest = 0;
+        for (int b = 1; b < plan->n_branches; b++) {
+            if (step->branches[b].least_radius < step->branches[tightest].least_radius)
+                tightest = b;
+        }
+        const struct wb_harness_branch_result *const b = &step->branches[tightest];
+        wb_text_append(text, "%2d  %-20s", i + 1, plan->steps[i].name);
+        if (isfinite(b->least_radius) && b->least_radius < 1e3)
+            wb_text_append(text, "  least radius %.3g mm (%s at %.4g mm)", b->least_radius / WB_MM,
+                           plan->branches[tightest].name, b->at / WB_MM);
+        wb_text_append(text, "\n");
+        for (int k = 0; k < plan->n_items; k++) {
+            const struct wb_harness_force *const f = &step->forces[k];
+            if (!f->is_mounted)
+                continue;
+            wb_text_append(text,
+                           "      %-16s %8.3g N  %8.3g N mm   at most %.3g N, %.3g N mm%s%s\n",
+                           plan->items[k].name, f->size, f->moment_size / WB_NMM, f->largest,
+                           f->largest_moment / WB_NMM,
+                           f->exceeds_force || f->exceeds_moment ? "  LIMIT EXCEEDED" : "",
+                           wb_harness_output_is_twist_sensitive(f) ? "  depends on GJ" : "");
+        }
+        for (int s = 0; s < step->n_snaps; s++)
+            wb_text_append(text, "      snap at %.3g of the step: %s moves by %.3g mm\n",
+                           step->snaps[s].fraction, branch_name(plan, step->snap_branch[s]),
+                           step->snaps[s].distance / WB_MM);
+    }
+}
+
+bool wb_harness_output_exceeds(const struct wb_harness_result_set *set)
+{
+    for (int i = 0; i < set->n_steps; i++) {
+        for (int k = 0; k < set->plan->n_items; k++) {
+            if (set->results[i].forces[k].exceeds_force || set->results[i].forces[k].exceeds_moment)
+                return true;
+        }
+        for (int b = 0; b < set->plan->n_branches; b++) {
+            if (set->results[i].branches[b].exceeds_radius)
+                return true;
+        }
+    }
+    return false;
+}
+
+void wb_harness_output_append_finding(struct wb_text *text, const struct wb_harness_result_set *set)
+{
+    const struct wb_harness_plan *const plan = set->plan;
+    double largest = 0.0;
+    int step = 0, item = 0;
+    for (int i = 0; i < set->n_steps; i++) {
+        for (int k = 0; k < plan->n_items; k++) {
+            if (set->results[i].forces[k].largest > largest) {
+                largest = set->results[i].forces[k].largest;
+                step = i;
+                item = k;
+            }
+        }
+    }
+    wb_text_append(text, "%s (simulation, %s): largest force %.3g N, on %s in step %d (%s)",
+                   plan->name, set->settings.is_elastic ? "elastic" : "elastoplastic", largest,
+                   plan->items[item].name, step + 1, plan->steps[step].name);
+    const int last = taken_off(set);
+    if (last >= 0) {
+        int branch;
+        const double distance = wb_harness_run_distance(set, last, &branch);
+        wb_text_append(text, "; taken off, it keeps a shape up to %.3g mm from that before (%s)",
+                       distance / WB_MM, plan->branches[branch].name);
+    }
+}

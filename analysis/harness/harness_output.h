@@ -1,0 +1,31 @@
+/* Results of a harness as files: harness.json with everything but the shapes, shapes.csv with the
+ * places along the branches after each step, forces.csv with what holds the items. */
+#ifndef WB_ANALYSIS_HARNESS_HARNESS_OUTPUT_H
+#define WB_ANALYSIS_HARNESS_HARNESS_OUTPUT_H
+
+#include "analysis/harness/harness_run.h"
+#include "analysis/keys/keys.h"
+#include "base/json.h"
+#include "base/status.h"
+#include "base/text.h"
+
+extern const struct wb_keys wb_harness_output_keys;
+
+/* Members of harness.json into an object. */
+void wb_harness_output_put(struct wb_json *object, const struct wb_harness_result_set *set);
+
+/* Writes the files into a folder, which exists. */
+WB_MUST_CHECK enum wb_status wb_harness_output_write(const struct wb_harness_result_set *set,
+                                                     const char *folder);
+
+/* A table for a terminal: each step with its forces and least radius. */
+void wb_harness_output_append_table(struct wb_text *text, const struct wb_harness_result_set *set);
+
+/* One sentence: residual shape or largest force, and limits that are exceeded. */
+void wb_harness_output_append_finding(struct wb_text *text,
+                                      const struct wb_harness_result_set *set);
+
+/* Whether a limit of the file is exceeded. */
+bool wb_harness_output_exceeds(const struct wb_harness_result_set *set);
+
+#endif

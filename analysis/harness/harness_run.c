@@ -1,0 +1,463 @@
+#include "analysis/harness/harness_run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+
+#define WB_LOG_DOMAIN "harness"
+
+struct run {
+    struct wb_harness_result_set *set;
+    const struct wb_harness_plan *plan;
+    struct wb_law_section *sections[WB_HARNESS_MOST_WIRES];
+    struct wb_harness *harness;
+    struct wb_harness_solver *solver;
+    int joints[WB_HARNESS_MOST_ITEMS];
+    int begins[WB_HARNESS_MOST_BRANCHES]; /* first place of each branch */
+    double weight;                        /* factor on the weight */
+    /* Of the current step. */
+    int step;
+    struct wb_harness_step_result *result;
+    bool (*progress)(void *context, int step, double fraction);
+    void *context;
+};
+
+/* --- the model --- */
+
+double wb_harness_run_torsion(const struct wb_harness_plan *plan, int wire,
+                              const struct wb_harness_settings *settings)
+{
+    const struct wb_harness_wire *const w = &plan->wires[wire];
+    const double EI = w->law.material.youngs_modulus * M_PI * pow(w->diameter, 4.0) / 64.0;
+    return w->torsional_stiffness > 0.0
+               ? w->torsional_stiffness
+               : settings->torsion * EI / (1.0 + w->law.material.poissons_ratio);
+}
+
+static enum wb_status make_section(struct run *run, int i)
+{
+    const struct wb_harness_wire *const wire = &run->plan->wires[i];
+    const struct wb_law_part part = {wire->law.material.youngs_modulus, (double)INFINITY};
+    struct wb_law law = wire->law;
+    if (run->set->settings.is_elastic)
+        wb_law_init_parallel(&law, &part, 1, 0.0, wire->law.material.poissons_ratio);
+    const struct wb_law_section_model model = {
+        .diameter = wire->diameter,
+        .law = &law,
+        .torsional_stiffness = wb_harness_run_torsion(run->plan, i, &run->set->settings),
+    };
+    return wb_law_section_create(&run->sections[i], &model);
+}
+
+/* Curvature between the places of a natural shape, constant beyond the first and the last. */
+static void natural_curvature(void *context, double s, double curvature[3])
+{
+    const struct wb_harness_plan_branch *const b = context;
+    const int last = b->n_curve - 1;
+    int i = 0;
+    while (i < last && b->place[i + 1] <= s)
+        i++;
+    const double span = i < last ? b->place[i + 1] - b->place[i] : 0.0;
+    const double part = span > 0.0 ? fmax((s - b->place[i]) / span, 0.0) : 0.0;
+    for (int k = 0; k < 2; k++) {
+        const double next = b->curvature[i < last ? i + 1 : i][k];
+        curvature[1 + k] = b->curvature[i][k] + part * (next - b->curvature[i][k]);
+    }
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Places of the clips within a branch, ascending; returns their number. */
+static int find_stations(const struct wb_harness_plan *plan, int branch, double *stations)
+{
+    int n = 0;
+    for (int i = 1; i < plan->n_items; i++) {
+        const struct wb_harness_item *const item = &plan->items[i];
+        if (item->branch == branch && item->at < plan->branches[branch].length)
+            stations[n++] = item->at;
+    }
+    qsort(stations, (size_t)n, sizeof *stations, by_value);
+    return n;
+}
+
+static enum wb_status make_harness(struct run *run)
+{
+    const struct wb_harness_plan *const plan = run->plan;
+    const size_t n = (size_t)plan->n_branches;
+    struct wb_memory memory = {0};
+    struct wb_harness_branch *const branches = wb_memory_take(&memory, n, sizeof *branches);
+    struct wb_harness_body *const bodies =
+        wb_memory_take(&memory, (size_t)plan->n_items, sizeof *bodies);
+    struct wb_harness_model model = {
+        .n_branches = plan->n_branches,
+        .branches = branches,
+        .bodies = bodies,
+        .element_length = run->set->settings.element_length,
+        .root = plan->root,
+    };
+    memcpy(model.gravity, plan->gravity, sizeof model.gravity);
+    for (int i = 0; i < plan->n_branches; i++) {
+        const struct wb_harness_plan_branch *const b = &plan->branches[i];
+        double *const stations = wb_memory_take(&memory, (size_t)plan->n_items, sizeof *stations);
+        branches[i] = (struct wb_harness_branch){
+            .parent = b->parent,
+            .section = run->sections[b->wire],
+            .length = b->length,
+            .mass = plan->wires[b->wire].mass,
+            .natural_curvature = b->n_curve > 0 ? natural_curvature : NULL,
+            .curvature_context = (void *)b,
+            .n_stations = find_stations(plan, i, stations),
+            .stations = stations,
+        };
+        memcpy(branches[i].leaving, b->leaving, sizeof b->leaving);
+    }
+    for (int i = 1; i < plan->n_items; i++) {
+        const struct wb_harness_item *const item = &plan->items[i];
+        if (item->kind != WB_HARNESS_CONNECTOR || item->mass == 0.0)
+            continue;
+        struct wb_harness_body *const body = &bodies[model.n_bodies++];
+        *body = (struct wb_harness_body){.branch = item->branch, .mass = item->mass};
+        memcpy(body->centre, item->centre, sizeof body->centre);
+    }
+    enum wb_status status = wb_harness_create(&run->harness, &model);
+    wb_memory_release(&memory);
+    if (status != WB_OK)
+        return status;
+    for (int i = 0; i < plan->n_items; i++)
+        run->joints[i] =
+            plan->items[i].branch < 0
+                ? 0
+                : wb_harness_joint(run->harness, plan->items[i].branch, plan->items[i].at);
+    const struct wb_harness_solver_model solver = {.harness = run->harness};
+    return wb_harness_solver_create(&run->solver, &solver);
+}
+
+/* --- results --- */
+
+/* Two places an element, its points, and those of the branch's beginning and end. */
+static void plan_places(struct run *run)
+{
+    struct wb_harness_result_set *const set = run->set;
+    const int n_points = wb_harness_n_points(run->harness);
+    set->n_elements = n_points / 2;
+    set->n_places = n_points + 2 * run->plan->n_branches;
+    for (int i = 0, next = 0, g = 0; i < run->plan->n_branches; i++) {
+        struct wb_harness_point point;
+        run->begins[i] = next++;
+        for (; g < n_points; g++, next++) {
+            wb_harness_point(run->harness, g, &point);
+            if (point.branch != i)
+                break;
+        }
+        next++;
+    }
+}
+
+static void set_place(const struct run *run, struct wb_harness_place *place, int branch, double s)
+{
+    const struct wb_rod_node node = wb_harness_position(run->harness, branch, s);
+    double R[9];
+    wb_rod_element_matrix(node.rotation, R);
+    *place = (struct wb_harness_place){.branch = branch, .s = s};
+    for (int k = 0; k < 3; k++) {
+        place->position[k] = node.position[k];
+        place->direction[k] = R[3 * k];
+    }
+}
+
+/* The curve's values at an end of a branch are those of its nearest point. */
+static void take_places(const struct run *run, struct wb_harness_place *places)
+{
+    const int n_points = wb_harness_n_points(run->harness);
+    int next[WB_HARNESS_MOST_BRANCHES];
+    for (int i = 0; i < run->plan->n_branches; i++)
+        next[i] = run->begins[i] + 1;
+    for (int g = 0; g < n_points; g++) {
+        struct wb_harness_point point;
+        wb_harness_point(run->harness, g, &point);
+        struct wb_harness_place *const place = &places[next[point.branch]++];
+        set_place(run, place, point.branch, point.arc_length);
+        place->curvature = hypot(point.curvature[1], point.curvature[2]);
+        place->twist = point.curvature[0];
+        place->moment = hypot(point.moment[1], point.moment[2]);
+        place->torque = point.moment[0];
+        place->tension = point.force;
+    }
+    for (int i = 0; i < run->plan->n_branches; i++) {
+        struct wb_harness_place *const first = &places[run->begins[i]];
+        struct wb_harness_place *const last = &places[next[i]];
+        struct wb_harness_place end;
+        *first = first[1];
+        *last = last[-1];
+        for (int at = 0; at < 2; at++) {
+            struct wb_harness_place *const to = at == 0 ? first : last;
+            set_place(run, &end, i, at == 0 ? 0.0 : run->plan->branches[i].length);
+            to->s = end.s;
+            memcpy(to->position, end.position, sizeof end.position);
+            memcpy(to->direction, end.direction, sizeof end.direction);
+        }
+    }
+}
+
+static bool is_held(const struct run *run, int item)
+{
+    return wb_harness_hold(run->harness, run->joints[item]) != WB_HARNESS_FREE;
+}
+
+static void take_forces(const struct run *run)
+{
+    for (int i = 0; i < run->plan->n_items; i++) {
+        struct wb_harness_force *const f = &run->result->forces[i];
+        double R[9], reaction[6];
+        f->is_mounted = is_held(run, i);
+        if (!f->is_mounted)
+            continue;
+        wb_harness_reaction(run->harness, run->joints[i], reaction);
+        wb_rod_element_matrix(wb_harness_node(run->harness, run->joints[i])->rotation, R);
+        for (int k = 0; k < 3; k++) {
+            const double axis[3] = {R[k], R[3 + k], R[6 + k]};
+            f->force[k] = wb_vec3_dot(axis, reaction);
+            f->moment[k] = wb_vec3_dot(axis, reaction + 3);
+        }
+        f->size = wb_vec3_length(f->force);
+        f->moment_size = wb_vec3_length(f->moment);
+        f->soft_force = (double)NAN;
+    }
+}
+
+/* Bend radii and curvatures of the current state. */
+static void watch_branches(const struct run *run, bool at_end)
+{
+    for (int g = 0; g < wb_harness_n_points(run->harness); g++) {
+        struct wb_harness_point point;
+        wb_harness_point(run->harness, g, &point);
+        struct wb_harness_branch_result *const b = &run->result->branches[point.branch];
+        const struct wb_harness_plan_branch *const plan = &run->plan->branches[point.branch];
+        const double bending = hypot(point.bending[1], point.bending[2]);
+        const double radius = 1.0 / hypot(point.curvature[1], point.curvature[2]);
+        b->largest_bending_so_far = fmax(b->largest_bending_so_far, bending);
+        b->is_beyond = b->largest_bending_so_far > run->plan->wires[plan->wire].largest_curvature;
+        b->exceeds_radius |= plan->least_radius > 0.0 && radius < plan->least_radius;
+        if (!at_end)
+            continue;
+        b->largest_bending = fmax(b->largest_bending, bending);
+        if (radius < b->least_radius) {
+            b->least_radius = radius;
+            b->at = point.arc_length;
+        }
+    }
+}
+
+static bool observe(void *context, double fraction)
+{
+    struct run *const run = context;
+    for (int i = 0; i < run->plan->n_items; i++) {
+        const struct wb_harness_item *const item = &run->plan->items[i];
+        struct wb_harness_force *const f = &run->result->forces[i];
+        double reaction[6];
+        if (!is_held(run, i))
+            continue;
+        wb_harness_reaction(run->harness, run->joints[i], reaction);
+        f->largest = fmax(f->largest, wb_vec3_length(reaction));
+        f->largest_moment = fmax(f->largest_moment, wb_vec3_length(reaction + 3));
+        f->exceeds_force = item->largest_force > 0.0 && f->largest > item->largest_force;
+        f->exceeds_moment = item->largest_moment > 0.0 && f->largest_moment > item->largest_moment;
+    }
+    watch_branches(run, false);
+    return !run->progress || run->progress(run->context, run->step, fraction);
+}
+
+/* --- steps --- */
+
+static void move(struct run *run, const struct wb_harness_step *step,
+                 struct wb_harness_result *result)
+{
+    const int joint = run->joints[step->item];
+    const struct wb_rod_node *const now = wb_harness_node(run->harness, joint);
+    struct wb_harness_aim aim = {.joint = joint, .target = *now};
+    if (step->kind == WB_HARNESS_MOUNT)
+        wb_harness_set_hold(run->harness, joint, run->plan->items[step->item].hold, now);
+    memcpy(aim.target.position, step->position, sizeof step->position);
+    if (step->has_direction)
+        wb_harness_file_rotation(step->direction, step->has_up ? step->up : NULL, now->rotation,
+                                 aim.target.rotation);
+    const struct wb_harness_move m = {
+        .n_aims = 1, .aims = &aim, .weight = run->weight, .observer = observe, .context = run};
+    wb_harness_solver_move(run->solver, &m, result);
+}
+
+static void compute_step(struct run *run, const struct wb_harness_step *step,
+                         struct wb_harness_result *result)
+{
+    const struct wb_harness_move hang = {.weight = 1.0, .observer = observe, .context = run};
+    switch (step->kind) {
+    case WB_HARNESS_HANG:
+        run->weight = 1.0;
+        wb_harness_solver_move(run->solver, &hang, result);
+        return;
+    case WB_HARNESS_MOUNT:
+    case WB_HARNESS_MOVE:
+        move(run, step, result);
+        return;
+    case WB_HARNESS_RELEASE:
+        wb_harness_set_hold(run->harness, run->joints[step->item], WB_HARNESS_FREE, NULL);
+        break;
+    case WB_HARNESS_TAKE_OFF:
+        for (int i = 1; i < run->plan->n_items; i++)
+            wb_harness_set_hold(run->harness, run->joints[i], WB_HARNESS_FREE, NULL);
+        wb_harness_set_hold(run->harness, 0, WB_HARNESS_FIXED, wb_harness_node(run->harness, 0));
+        run->weight = 0.0;
+        break;
+    }
+    wb_harness_solver_settle(run->solver, run->weight, observe, run, result);
+}
+
+static void take_step(struct run *run, const struct wb_harness_result *result)
+{
+    struct wb_harness_step_result *const r = run->result;
+    double s;
+    r->end = result->end;
+    r->problem = result->problem;
+    r->fraction = result->fraction;
+    r->worst_branch = result->end == WB_HARNESS_NOT_CONVERGED
+                          ? wb_harness_place_of(run->harness, result->worst_joint, &s)
+                          : -1;
+    r->increments = result->increments;
+    r->iterations = result->iterations;
+    r->n_snaps = result->n_snaps;
+    memcpy(r->snaps, result->snaps, sizeof r->snaps);
+    for (int i = 0; i < r->n_snaps; i++)
+        r->snap_branch[i] = wb_harness_place_of(run->harness, r->snaps[i].joint, &r->snap_at[i]);
+    r->elastic = wb_harness_elastic_energy(run->harness);
+    r->plastic = wb_harness_plastic_work(run->harness);
+    take_forces(run);
+    watch_branches(run, true);
+    take_places(run, r->places);
+}
+
+static void begin_step(struct run *run, int step)
+{
+    struct wb_harness_result_set *const set = run->set;
+    struct wb_harness_step_result *const r = &set->results[step];
+    const size_t branches = (size_t)run->plan->n_branches;
+    run->step = step;
+    run->result = r;
+    r->forces = wb_memory_take(set->memory, (size_t)run->plan->n_items, sizeof *r->forces);
+    r->branches = wb_memory_take(set->memory, branches, sizeof *r->branches);
+    r->places = wb_memory_take(set->memory, (size_t)set->n_places, sizeof *r->places);
+    for (int i = 0; i < run->plan->n_branches; i++) {
+        r->branches[i].least_radius = (double)INFINITY;
+        if (step > 0)
+            r->branches[i].largest_bending_so_far =
+                set->results[step - 1].branches[i].largest_bending_so_far;
+    }
+}
+
+static enum wb_status compute(struct run *run)
+{
+    struct wb_harness_result_set *const set = run->set;
+    struct wb_harness_balance balance;
+    double weight[6];
+    for (int i = 0; i < run->plan->n_wires; i++)
+        WB_TRY(make_section(run, i));
+    WB_TRY(make_harness(run));
+    plan_places(run);
+    set->results = wb_memory_take(set->memory, (size_t)run->plan->n_steps, sizeof *set->results);
+    set->natural = wb_memory_take(set->memory, (size_t)set->n_places, sizeof *set->natural);
+    wb_harness_weight(run->harness, weight);
+    set->weight = wb_vec3_length(weight);
+    wb_harness_evaluate(run->harness, 0.0, &balance);
+    take_places(run, set->natural);
+    set->converged = true;
+    for (int i = 0; i < run->plan->n_steps && set->converged; i++) {
+        struct wb_harness_result result;
+        begin_step(run, i);
+        compute_step(run, &run->plan->steps[i], &result);
+        take_step(run, &result);
+        set->n_steps = i + 1;
+        set->converged = result.end == WB_HARNESS_CONVERGED;
+    }
+    return WB_OK;
+}
+
+static bool has_default_torsion(const struct wb_harness_plan *plan)
+{
+    for (int i = 0; i < plan->n_branches; i++) {
+        if (plan->wires[plan->branches[i].wire].torsional_stiffness == 0.0)
+            return true;
+    }
+    return false;
+}
+
+static enum wb_status compute_once(struct wb_harness_result_set *set,
+                                   const struct wb_harness_plan *plan,
+                                   const struct wb_harness_settings *settings,
+                                   bool (*progress)(void *context, int step, double fraction),
+                                   void *context)
+{
+    struct run *const run = wb_memory_new(1, sizeof *run);
+    *set = (struct wb_harness_result_set){.plan = plan, .settings = *settings};
+    set->memory = wb_memory_new(1, sizeof *set->memory);
+    run->set = set;
+    run->plan = plan;
+    run->progress = progress;
+    run->context = context;
+    const enum wb_status status = compute(run);
+    wb_harness_solver_destroy(run->solver);
+    wb_harness_destroy(run->harness);
+    for (int i = 0; i < plan->n_wires; i++)
+        wb_law_section_destroy(run->sections[i]);
+    free(run);
+    return status;
+}
+
+enum wb_status wb_harness_run_compute(struct wb_harness_result_set *set,
+                                      const struct wb_harness_plan *plan,
+                                      const struct wb_harness_settings *settings,
+                                      bool (*progress)(void *context, int step, double fraction),
+                                      void *context)
+{
+    struct wb_harness_result_set soft;
+    struct wb_harness_settings softer = *settings;
+    WB_TRY(compute_once(set, plan, settings, progress, context));
+    if (!has_default_torsion(plan) || !set->converged)
+        return WB_OK;
+    softer.torsion *= 0.2;
+    const enum wb_status status = compute_once(&soft, plan, &softer, progress, context);
+    for (int i = 0; status == WB_OK && i < soft.n_steps && soft.converged; i++) {
+        for (int k = 0; k < plan->n_items; k++)
+            set->results[i].forces[k].soft_force = soft.results[i].forces[k].size;
+    }
+    wb_harness_run_release(&soft);
+    return status;
+}
+
+void wb_harness_run_release(struct wb_harness_result_set *set)
+{
+    if (set->memory)
+        wb_memory_release(set->memory);
+    free(set->memory);
+    *set = (struct wb_harness_result_set){.plan = NULL};
+}
+
+double wb_harness_run_distance(const struct wb_harness_result_set *set, int step, int *branch)
+{
+    double largest = 0.0;
+    *branch = 0;
+    for (int i = 0; i < set->n_places; i++) {
+        const double way =
+            wb_vec3_distance(set->natural[i].position, set->results[step].places[i].position);
+        if (way > largest) {
+            largest = way;
+            *branch = set->natural[i].branch;
+        }
+    }
+    return largest;
+}

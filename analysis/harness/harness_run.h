@@ -1,0 +1,92 @@
+/* Computes a harness file: the steps of the assembly one after another, with shapes, forces, radii
+ * and work after each. Called by `wirebench solve harness`. */
+#ifndef WB_ANALYSIS_HARNESS_HARNESS_RUN_H
+#define WB_ANALYSIS_HARNESS_HARNESS_RUN_H
+
+#include <stdbool.h>
+
+#include "analysis/harness/harness_file.h"
+#include "base/status.h"
+#include "fe/harness/harness_solver.h"
+
+struct wb_harness_settings {
+    bool is_elastic;       /* the same wires without yielding */
+    double element_length; /* m; 0: 1/100 of the length of all branches */
+    double torsion;        /* factor on a torsional stiffness that the file does not give */
+};
+
+/* What holds one item. In its own frame: x along the wire there, z up. */
+struct wb_harness_force {
+    bool is_mounted;
+    double force[3], moment[3];         /* on the wire, N, N m */
+    double size, moment_size;           /* of both vectors */
+    double largest, largest_moment;     /* of them on the way of the step */
+    double soft_force;                  /* `size` with a fifth of the default torsional stiffness;
+                                           NAN: not computed */
+    bool exceeds_force, exceeds_moment; /* a limit, on the way */
+};
+
+struct wb_harness_branch_result {
+    double least_radius, at;       /* m; where */
+    double largest_bending;        /* curvature relative to the natural shape, 1/m */
+    double largest_bending_so_far; /* from the first step on */
+    bool is_beyond;                /* the calibrated range */
+    bool exceeds_radius;           /* the limit, on the way */
+};
+
+/* A place of the shape. */
+struct wb_harness_place {
+    int branch;
+    double s;                /* m, along the branch */
+    double position[3];      /* m */
+    double direction[3];     /* of the wire */
+    double curvature, twist; /* 1/m */
+    double moment, torque;   /* N m */
+    double tension;          /* N */
+};
+
+struct wb_harness_step_result {
+    enum wb_harness_end end;
+    const char *problem;
+    double fraction;  /* that was completed */
+    int worst_branch; /* of a step that did not converge; -1: none */
+    int increments, iterations;
+    int n_snaps;
+    struct wb_harness_snap snaps[WB_HARNESS_MOST_SNAPS];
+    int snap_branch[WB_HARNESS_MOST_SNAPS];    /* -1: the root */
+    double snap_at[WB_HARNESS_MOST_SNAPS];     /* m */
+    struct wb_harness_force *forces;           /* (n_items) */
+    struct wb_harness_branch_result *branches; /* (n_branches) */
+    struct wb_harness_place *places;           /* (n_places) */
+    double elastic;                            /* J: what the wires would give back */
+    double plastic;                            /* J: plastic work from the first step on */
+};
+
+struct wb_harness_result_set {
+    const struct wb_harness_plan *plan; /* borrowed */
+    struct wb_harness_settings settings;
+    int n_elements, n_places;
+    double weight; /* N */
+    int n_steps;   /* computed, the last one may be incomplete */
+    bool converged;
+    struct wb_harness_place *natural;       /* (n_places) the stress-free shape */
+    struct wb_harness_step_result *results; /* (n_steps of the plan) */
+    struct wb_memory *memory;
+};
+
+/* Computes all steps, or up to one that finds no equilibrium, which is a result. `progress` may be
+ * NULL; it returns false to stop. */
+WB_MUST_CHECK enum wb_status
+wb_harness_run_compute(struct wb_harness_result_set *set, const struct wb_harness_plan *plan,
+                       const struct wb_harness_settings *settings,
+                       bool (*progress)(void *context, int step, double fraction), void *context);
+void wb_harness_run_release(struct wb_harness_result_set *set); /* accepts a zeroed one */
+
+/* GJ of a wire as computed, N m2. */
+double wb_harness_run_torsion(const struct wb_harness_plan *plan, int wire,
+                              const struct wb_harness_settings *settings);
+
+/* Largest distance between the shape after a step and the stress-free shape, m, and its branch. */
+double wb_harness_run_distance(const struct wb_harness_result_set *set, int step, int *branch);
+
+#endif

@@ -1,0 +1,150 @@
+#include "cli/solve_harness.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "analysis/harness/harness_output.h"
+#include "base/interrupt.h"
+#include "base/memory.h"
+#include "base/progress.h"
+#include "base/units.h"
+#include "cli/file_kind.h"
+#include "cli/finding.h"
+
+#define WB_LOG_DOMAIN "solve"
+
+struct watched {
+    struct wb_progress progress;
+    const struct wb_harness_plan *plan;
+};
+
+static bool watch(void *context, int step, double fraction)
+{
+    struct watched *const watched = context;
+    wb_progress_update(&watched->progress, step + fraction, watched->plan->steps[step].name);
+    return !wb_interrupted();
+}
+
+/* Releases after a calibration on loading only: the hardening rule is then an assumption. */
+static void warn_of_unloading(const struct wb_harness_plan *plan)
+{
+    for (int i = 0; i < plan->n_steps; i++) {
+        const struct wb_harness_step *const step = &plan->steps[i];
+        if (step->kind != WB_HARNESS_RELEASE && step->kind != WB_HARNESS_TAKE_OFF)
+            continue;
+        struct wb_text names = {0};
+        for (int w = 0; w < plan->n_wires; w++) {
+            if (!plan->wires[w].has_unloading)
+                wb_text_append(&names, "%s%s (%s)", names.length > 0 ? ", " : "",
+                               plan->wires[w].name, plan->wires[w].file);
+        }
+        if (names.length > 0)
+            wb_warn("step %d, %s: fitted on loading only: %s; what springs back follows from an "
+                    "assumed hardening rule",
+                    i + 1, step->name, wb_text_string(&names));
+        wb_text_release(&names);
+    }
+}
+
+static void warn_not_converged(const struct wb_harness_result_set *set)
+{
+    const struct wb_harness_step_result *const last = &set->results[set->n_steps - 1];
+    const struct wb_harness_step *const step = &set->plan->steps[set->n_steps - 1];
+    if (set->converged)
+        return;
+    if (last->end == WB_HARNESS_STOPPED)
+        wb_warn("stopped in step %d, %s, at %.3g of it", set->n_steps, step->name, last->fraction);
+    else
+        wb_warn("step %d, %s, ends at %.3g of it, in branch %s: %s", set->n_steps, step->name,
+                last->fraction,
+                last->worst_branch < 0 ? "(root)" : set->plan->branches[last->worst_branch].name,
+                last->problem);
+}
+
+static void append_trust(struct wb_text *text, const struct wb_harness_result_set *set)
+{
+    const struct wb_harness_plan *const plan = set->plan;
+    const char *between = "; ";
+    wb_text_append(text, set->converged ? "complete" : "in part: see the warning");
+    if (wb_harness_output_exceeds(set))
+        wb_text_append(text, "; LIMITS EXCEEDED");
+    for (int b = 0; b < plan->n_branches; b++) {
+        if (!set->results[set->n_steps - 1].branches[b].is_beyond)
+            continue;
+        wb_text_append(text, "%s%s", between, plan->branches[b].name);
+        between = ", ";
+    }
+    if (between[0] == ',')
+        wb_text_append(text, " bent beyond the calibration");
+    wb_text_append(text, "; computed, not compared with a measurement");
+}
+
+static enum wb_status deliver(const struct wb_command_common *common,
+                              const struct wb_harness_result_set *set)
+{
+    struct wb_text table = {0};
+    struct wb_finding finding = {.figure = NULL};
+    if (common->output)
+        WB_TRY(wb_harness_output_write(set, common->output));
+    warn_not_converged(set);
+    if (common->json) {
+        struct wb_json *const root = wb_json_create();
+        wb_harness_output_put(root, set);
+        wb_command_print_json(root);
+        return WB_OK;
+    }
+    wb_harness_output_append_table(&table, set);
+    fputs(wb_text_string(&table), stdout);
+    wb_text_release(&table);
+    wb_harness_output_append_finding(&finding.found, set);
+    append_trust(&finding.trust, set);
+    if (!common->output)
+        wb_finding_append_command(&finding.next,
+                                  "wirebench solve harness %s -o DIR, for shapes "
+                                  "and forces as tables",
+                                  set->plan->path);
+    else if (!set->settings.is_elastic)
+        wb_finding_append_command(&finding.next,
+                                  "wirebench solve harness %s --law elastic, for "
+                                  "the same without yielding",
+                                  set->plan->path);
+    wb_finding_print(&finding);
+    return WB_OK;
+}
+
+static enum wb_status compute(const struct wb_command_common *common,
+                              const struct wb_solve_settings *settings,
+                              struct wb_harness_plan *plan, struct wb_harness_result_set *set)
+{
+    const struct wb_harness_settings s = {.is_elastic = settings->law == WB_SOLVE_ELASTIC,
+                                          .torsion = 1.0};
+    struct watched watched = {.plan = plan};
+    char path[WB_PATH];
+    WB_TRY(wb_file_find_fixture(path, "harnesses", settings->model, NULL));
+    WB_TRY(wb_file_kind_check(path, WB_FILE_BIT(WB_FILE_HARNESS)));
+    WB_TRY(wb_harness_file_read(plan, path));
+    if (common->output)
+        WB_TRY(wb_file_prepare_output(common->output, common->force));
+    if (!s.is_elastic)
+        warn_of_unloading(plan);
+    wb_progress_start(&watched.progress, "solve", "steps", plan->n_steps);
+    const enum wb_status status = wb_harness_run_compute(set, plan, &s, watch, &watched);
+    wb_progress_finish(&watched.progress);
+    return status;
+}
+
+int wb_solve_harness(const struct wb_command_common *common,
+                     const struct wb_solve_settings *settings)
+{
+    struct wb_harness_plan *const plan = wb_memory_new(1, sizeof *plan);
+    struct wb_harness_result_set set = {.plan = NULL};
+    enum wb_status status = compute(common, settings, plan, &set);
+    bool complete = true;
+    if (status == WB_OK) {
+        complete = set.converged;
+        status = deliver(common, &set);
+    }
+    wb_harness_run_release(&set);
+    free(plan);
+    return status == WB_OK && !complete ? WB_EXIT_INCOMPLETE : wb_command_exit(status);
+}

@@ -1,0 +1,229 @@
+#include "analysis/harness/harness_output_private.h"
+
+#include "base/units.h"
+#include "tests/analysis/harness/harness_text.h"
+#include "tests/messages.h"
+#include "tests/own_folder.h"
+
+static char file[64];
+
+static int begin(void **state)
+{
+    if (make_folder(state) != 0)
+        return -1;
+    snprintf(file, sizeof file, "%s/h.yaml", folder);
+    return 0;
+}
+
+static const struct wb_harness_settings yielding = {.torsion = 1.0};
+static const struct wb_harness_settings elastic = {.is_elastic = true, .torsion = 1.0};
+
+/* Computes the file with a line replaced; the caller releases the results and frees the plan. */
+static struct wb_harness_plan *compute(struct wb_harness_result_set *set, int line,
+                                       const char *text, const struct wb_harness_settings *settings)
+{
+    struct wb_harness_plan *const plan = make_plan();
+    write_harness(file, line, text);
+    assert_int_equal(wb_harness_file_read(plan, file), WB_OK);
+    assert_int_equal(wb_harness_run_compute(set, plan, settings, NULL, NULL), WB_OK);
+    return plan;
+}
+
+static void release(struct wb_harness_result_set *set, struct wb_harness_plan *plan)
+{
+    wb_harness_run_release(set);
+    free(plan);
+}
+
+static double weight_of(const struct wb_harness_plan *plan)
+{
+    double mass = 0.0;
+    for (int i = 0; i < plan->n_branches; i++)
+        mass += plan->branches[i].length * plan->wires[plan->branches[i].wire].mass;
+    for (int i = 0; i < plan->n_items; i++)
+        mass += plan->items[i].mass;
+    return mass * WB_STANDARD_GRAVITY;
+}
+
+static void root_carries_the_weight_of_what_hangs(void **unused)
+{
+    (void)unused;
+    struct wb_harness_result_set set;
+    struct wb_harness_plan *const plan = compute(&set, 0, NULL, &yielding);
+    assert_true(set.converged);
+    assert_int_equal(set.n_steps, 5);
+    const struct wb_harness_force *const root = &set.results[0].forces[0];
+    assert_close_relative(root->size, weight_of(plan), 1e-9);
+    assert_close_relative(set.weight, weight_of(plan), 1e-12);
+    /* Its frame is that of space: z up, and a moment about -y against the weight's. */
+    assert_close_relative(root->force[2], weight_of(plan), 1e-9);
+    assert_true(root->moment[1] < 0.0);
+    assert_false(set.results[0].forces[3].is_mounted);
+    assert_true(set.results[1].forces[3].is_mounted);
+    assert_false(set.results[3].forces[3].is_mounted);
+    /* Taken off, nothing holds it. */
+    assert_true(set.results[4].forces[0].size < 1e-9);
+    release(&set, plan);
+}
+
+static void elastic_harness_forgets(void **unused)
+{
+    (void)unused;
+    struct wb_harness_result_set set;
+    struct wb_harness_plan *const plan = compute(&set, 0, NULL, &elastic);
+    int branch;
+    assert_true(set.converged);
+    for (int i = 0; i < 5; i++)
+        assert_close(set.results[i].plastic, 0.0, 1e-12 * set.results[1].elastic);
+    assert_true(wb_harness_run_distance(&set, 4, &branch) < 1e-8);
+    release(&set, plan);
+}
+
+static void yielding_harness_keeps_a_shape(void **unused)
+{
+    (void)unused;
+    struct wb_harness_result_set set;
+    struct wb_harness_plan *const plan = compute(&set, 0, NULL, &yielding);
+    int branch;
+    for (int i = 1; i < 4; i++)
+        assert_true(set.results[i].plastic > set.results[i - 1].plastic);
+    assert_true(wb_harness_run_distance(&set, 4, &branch) > 1e-3);
+    assert_true(set.results[4].elastic < 1e-12);
+    release(&set, plan);
+}
+
+/* The clip goes around a triangle three times. */
+static void closed_sequence_yields_no_work(void **unused)
+{
+    (void)unused;
+    static const char laps[] = "  - {move: C1, at_mm: [150, 60, 30]}\n"
+                               "  - {move: C1, at_mm: [150, -20, 70]}\n"
+                               "  - {move: C1, at_mm: [190, 0, 30]}\n"
+                               "  - {move: C1, at_mm: [150, 60, 30]}\n"
+                               "  - {move: C1, at_mm: [150, -20, 70]}\n"
+                               "  - {move: C1, at_mm: [190, 0, 30]}\n"
+                               "  - {move: C1, at_mm: [150, 60, 30]}\n"
+                               "  - {move: C1, at_mm: [150, -20, 70]}\n"
+                               "  - {move: C1, at_mm: [190, 0, 30]}";
+    struct wb_harness_result_set set;
+    struct wb_harness_plan *const plan = compute(&set, 19, laps, &yielding);
+    assert_true(set.converged);
+    for (int lap = 0; lap < 3; lap++) {
+        const struct wb_harness_step_result *const from = &set.results[1 + 3 * lap];
+        const struct wb_harness_step_result *const to = &set.results[4 + 3 * lap];
+        assert_true(to->plastic > from->plastic);
+        assert_true(to->plastic + to->elastic > from->plastic + from->elastic);
+    }
+    release(&set, plan);
+}
+
+/* The heavy branch hangs beside the clip, whose axis is turned: the trunk is twisted. */
+static void forces_that_depend_on_a_default_are_known(void **unused)
+{
+    (void)unused;
+    struct wb_harness_result_set set;
+    struct wb_harness_plan *plan =
+        compute(&set, 18,
+                "  - {mount: K1, at_mm: [350, 200, -100], direction: [0, 1, 0.5]}\n"
+                "  - {mount: C1, at_mm: [190, 0, 30], direction: [1, 0.2, 0.2]}",
+                &yielding);
+    bool any = false;
+    for (int i = 0; i < plan->n_items; i++)
+        any |= wb_harness_output_is_twist_sensitive(&set.results[1].forces[i]);
+    assert_true(any);
+    assert_true(isfinite(set.results[1].forces[1].soft_force));
+    assert_false(wb_harness_output_is_twist_sensitive(&set.results[0].forces[0]));
+    release(&set, plan);
+
+    plan = make_plan();
+    write_harness(file, 0, NULL);
+    assert_int_equal(wb_harness_file_read(plan, file), WB_OK);
+    for (int i = 0; i < plan->n_wires; i++)
+        plan->wires[i].torsional_stiffness = 1e-4;
+    assert_int_equal(wb_harness_run_compute(&set, plan, &yielding, NULL, NULL), WB_OK);
+    assert_true(isnan(set.results[1].forces[3].soft_force));
+    assert_false(wb_harness_output_is_twist_sensitive(&set.results[1].forces[3]));
+    assert_true(wb_harness_run_torsion(plan, 0, &yielding) == 1e-4);
+    release(&set, plan);
+}
+
+static void limits_are_watched(void **unused)
+{
+    (void)unused;
+    struct wb_harness_result_set set;
+    struct wb_harness_plan *plan =
+        compute(&set, 15, "  - {name: C1, branch: B1, at_mm: 200, holds: axis, most_force_N: 0.1}",
+                &yielding);
+    assert_true(set.results[1].forces[3].exceeds_force);
+    assert_false(set.results[1].forces[3].exceeds_moment);
+    assert_true(wb_harness_output_exceeds(&set));
+    release(&set, plan);
+    plan = compute(&set, 8,
+                   "  - {name: B1, from: R, to: J, wire: trunk, length_mm: 300, least_radius_mm: "
+                   "1000}",
+                   &yielding);
+    assert_true(set.results[1].branches[0].exceeds_radius);
+    assert_false(set.results[1].branches[1].exceeds_radius);
+    release(&set, plan);
+    plan = compute(&set, 0, NULL, &yielding);
+    assert_false(wb_harness_output_exceeds(&set));
+    release(&set, plan);
+}
+
+/* A constant natural curvature is the shape of the harness that was taken off before it yielded. */
+static void natural_shape_is_free_of_force(void **unused)
+{
+    (void)unused;
+    struct wb_harness_result_set set;
+    struct wb_harness_plan *const plan =
+        compute(&set, 8,
+                "  - {name: B1, from: R, to: J, wire: trunk, length_mm: 300, natural_shape: "
+                "{curvature_1_m: [0, 5]}}",
+                &elastic);
+    /* An arc in the plane of x and y: curvature 5 /m about z. */
+    const struct wb_harness_place *place = set.natural;
+    while (place[1].branch == 0)
+        place++;
+    assert_close_relative(place->s, 0.3, 1e-12);
+    assert_close(place->position[0], sin(1.5) / 5.0, 1e-8);
+    assert_close(place->position[1], (1.0 - cos(1.5)) / 5.0, 1e-8);
+    assert_close_relative(place->curvature, 5.0, 1e-12);
+    assert_true(place->moment == 0.0);
+    release(&set, plan);
+}
+
+static bool stop_in_second(void *context, int step, double fraction)
+{
+    (void)context, (void)fraction;
+    return step < 1;
+}
+
+static void stops_when_asked(void **unused)
+{
+    (void)unused;
+    struct wb_harness_plan *const plan = make_plan();
+    struct wb_harness_result_set set;
+    write_harness(file, 0, NULL);
+    assert_int_equal(wb_harness_file_read(plan, file), WB_OK);
+    assert_int_equal(wb_harness_run_compute(&set, plan, &yielding, stop_in_second, NULL), WB_OK);
+    assert_false(set.converged);
+    assert_int_equal(set.n_steps, 2);
+    assert_int_equal(set.results[1].end, WB_HARNESS_STOPPED);
+    assert_true(set.results[1].fraction > 0.0 && set.results[1].fraction < 1.0);
+    release(&set, plan);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(root_carries_the_weight_of_what_hangs),
+        cmocka_unit_test(elastic_harness_forgets),
+        cmocka_unit_test(yielding_harness_keeps_a_shape),
+        cmocka_unit_test(closed_sequence_yields_no_work),
+        cmocka_unit_test(forces_that_depend_on_a_default_are_known),
+        cmocka_unit_test(limits_are_watched),
+        cmocka_unit_test(natural_shape_is_free_of_force),
+        cmocka_unit_test(stops_when_asked),
+    };
+    return cmocka_run_group_tests(tests, begin, remove_folder);
+}

@@ -1,0 +1,84 @@
+#!/bin/bash
+# `wirebench solve harness`: the shipped harness on the terminal, as JSON and as files, and what goes
+# wrong. Usage: harness.sh WIREBENCH SOURCE_ROOT
+. "$2/tests/cli/reports.sh"
+root=$2
+export WIREBENCH_DATA=$root
+cd "$folder" || exit 1
+
+"$wirebench" solve harness small -o out >said 2>warned || fail "solve harness ended with $?"
+for part in 'mount C1' 'least radius' 'LIMIT EXCEEDED' 'simulation, elastoplastic'; do
+    grep -qF "$part" said || fail "'$part' is not said: $(cat said)"
+done
+# Its wires were fitted on loading only.
+[ "$(grep -c 'step [67], .*fitted on loading only: trunk (bundle-7.yaml), lead' warned)" -eq 2 ] ||
+    fail "what is released is not warned of: $(cat warned)"
+[ "$(ls out)" = "$(printf 'forces.csv\nharness.json\nshapes.csv')" ] || fail "files: $(ls out)"
+"$wirebench" info out >kind && grep -q 'solve harness' kind || fail "info out: $(cat kind)"
+"$wirebench" solve harness small --json >out.json 2>/dev/null || fail 'solve harness --json'
+cmp -s out.json out/harness.json || fail '--json and harness.json differ'
+
+# The numbers of the tables are those of the JSON object; the shape continues from branch to branch.
+python3 - out <<'PYTHON' || fail 'the tables do not agree'
+import csv, json, math, sys
+result = json.load(open(sys.argv[1] + "/harness.json"))
+assert result["converged"] and len(result["steps"]) == 7
+forces = list(csv.DictReader(open(sys.argv[1] + "/forces.csv")))
+for row in forces:
+    step = result["steps"][int(row["step"]) - 1]
+    item = next(i for i in step["forces"] if i["name"] == row["item"])
+    assert float(row["force_N"]) == item["force_N"]
+    along, across, up = (float(row["force_%s_N" % k]) for k in ("along", "across", "up"))
+    assert math.isclose(math.hypot(along, across, up), item["force_N"], rel_tol=1e-12, abs_tol=1e-15)
+    assert item["largest_force_N"] >= item["force_N"] * (1 - 1e-12)
+assert {row["item"] for row in forces} == {"R", "C1", "K1", "K2"}
+shapes = list(csv.DictReader(open(sys.argv[1] + "/shapes.csv")))
+steps = [row["step"] for row in shapes]
+assert sorted(set(steps)) == ["1", "2", "3", "4", "5", "6", "7", "natural"]
+place = lambda row: [float(row[k]) for k in ("x_mm", "y_mm", "z_mm")]
+for step in set(steps):
+    ends = {}
+    for row in shapes:
+        if row["step"] == step:
+            ends.setdefault(row["branch"], []).append(row)
+    assert math.dist(place(ends["B1"][0]), [0, 0, 0]) == 0
+    for branch in ("B2", "B3"):
+        assert math.dist(place(ends["B1"][-1]), place(ends[branch][0])) < 1e-9
+    for rows in ends.values():
+        way = sum(math.dist(place(a), place(b)) for a, b in zip(rows, rows[1:]))
+        assert math.isclose(way, float(rows[-1]["s_mm"]), rel_tol=2e-3)
+natural = [row for row in shapes if row["step"] == "natural"]
+assert all(float(row["moment_N_mm"]) == 0 for row in natural)
+PYTHON
+
+"$wirebench" solve harness small --law elastic -o elastic >said 2>warned || fail 'elastic'
+[ ! -s warned ] || fail "elastic: $(cat warned)"
+python3 - elastic <<'PYTHON' || fail 'an elastic harness does not return'
+import json, sys
+result = json.load(open(sys.argv[1] + "/harness.json"))
+assert result["law"] == "elastic" and result["residual_shape"]["distance_mm"] < 1e-5
+PYTHON
+
+# A properties file of `calibrate` is a wire, with unloading and a range of curvatures.
+sed "s|wire: type3|wire: $root/docs/cards/type1.yaml|" "$root/fixtures/harnesses/small.yaml" >own.yaml
+"$wirebench" solve harness own.yaml -o own >said 2>warned || fail "properties: $(cat warned)"
+grep -q 'only: trunk (bundle-7.yaml);' warned || fail "a calibrated wire is warned of: $(cat warned)"
+grep -q 'B[23].* bent beyond the calibration' said || fail "the range is not named: $(cat said)"
+
+ends_with() { # CODE WORDS ARGUMENTS...
+    local code=$1 words=$2
+    shift 2
+    "$wirebench" "$@" >said 2>&1
+    local found=$?
+    [ $found -eq "$code" ] || fail "$*: exit code $found, expected $code: $(cat said)"
+    grep -qF -- "$words" said || fail "$*: '$words' is not said: $(cat said)"
+}
+ends_with 1 --force solve harness small -o out
+ends_with 0 found solve harness small -o out --force
+ends_with 2 'HARNESS.yaml' solve harness
+ends_with 1 'a wire file' solve harness "$root/fixtures/wires/type3.yaml"
+ends_with 1 'wirebench solve harness' solve bundle "$root/fixtures/harnesses/small.yaml"
+sed 's/at_mm: \[190, 0, 30\]/at_mm: [190, 0, 130]/' "$root/fixtures/harnesses/small.yaml" >far.yaml
+ends_with 1 'far.yaml:20: at_mm: C1 to R: 230.2 mm apart, 200 mm of wire' solve harness far.yaml -o far
+[ ! -e far ] || fail 'a rejected file leaves a folder'
+finish 'solve harness'
