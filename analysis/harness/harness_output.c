@@ -341,6 +341,12 @@ enum wb_status wb_harness_output_write(const struct wb_harness_result_set *set, 
 
 /* --- the terminal --- */
 
+/* Round-off is 0. */
+static double chopped(double value)
+{
+    return value < 1e-8 ? 0.0 : value;
+}
+
 void wb_harness_output_append_table(struct wb_text *text, const struct wb_harness_result_set *set)
 {
     const struct wb_harness_plan *const plan = set->plan;
@@ -363,8 +369,8 @@ void wb_harness_output_append_table(struct wb_text *text, const struct wb_harnes
                 continue;
             wb_text_append(text,
                            "      %-16s %8.3g N  %8.3g N mm   at most %.3g N, %.3g N mm%s%s\n",
-                           plan->items[k].name, f->size, f->moment_size / WB_NMM, f->largest,
-                           f->largest_moment / WB_NMM,
+                           plan->items[k].name, chopped(f->size), chopped(f->moment_size / WB_NMM),
+                           chopped(f->largest), chopped(f->largest_moment / WB_NMM),
                            f->exceeds_force || f->exceeds_moment ? "  LIMIT EXCEEDED" : "",
                            wb_harness_output_is_twist_sensitive(f) ? "  depends on GJ" : "");
         }

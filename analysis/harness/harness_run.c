@@ -48,6 +48,7 @@ static enum wb_status make_section(struct run *run, int i)
         .diameter = wire->diameter,
         .law = &law,
         .torsional_stiffness = wb_harness_run_torsion(run->plan, i, &run->set->settings),
+        .fibres = run->set->settings.fibres,
     };
     return wb_law_section_create(&run->sections[i], &model);
 }
@@ -135,7 +136,8 @@ static enum wb_status make_harness(struct run *run)
             plan->items[i].branch < 0
                 ? 0
                 : wb_harness_joint(run->harness, plan->items[i].branch, plan->items[i].at);
-    const struct wb_harness_solver_model solver = {.harness = run->harness};
+    const struct wb_harness_solver_model solver = {
+        .harness = run->harness, .most_rotation = run->set->settings.most_rotation};
     return wb_harness_solver_create(&run->solver, &solver);
 }
 

@@ -10,9 +10,12 @@
 #include "fe/harness/harness_solver.h"
 
 struct wb_harness_settings {
-    bool is_elastic;       /* the same wires without yielding */
-    double element_length; /* m; 0: 1/100 of the length of all branches */
-    double torsion;        /* factor on a torsional stiffness that the file does not give */
+    bool is_elastic; /* the same wires without yielding */
+    double torsion;  /* factor on a torsional stiffness that the file does not give */
+    /* Of the computation; 0: the defaults. */
+    double element_length;               /* m */
+    double most_rotation;                /* of a joint in an increment, rad */
+    struct wb_rod_section_layout fibres; /* of a section */
 };
 
 /* What holds one item. In its own frame: x along the wire there, z up. */

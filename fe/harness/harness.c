@@ -62,6 +62,7 @@ struct wb_harness {
     struct element *elements;
     struct wb_harness_body *bodies;
     struct joint *joints;
+    double length;                   /* of all branches, m */
     double gravity[3], lever, noise; /* lever: 1/m, makes moments forces */
     double drag, carried;
     double weight; /* its factor in the last evaluation */
@@ -75,15 +76,16 @@ struct wb_harness {
     double plastic_work;
     double *history, *trial_history;
 
-    struct wb_rod_node *nodes;           /* (3 n_elements) of the trial state */
-    struct wb_rod_node *committed_nodes; /* (n_joints) */
-    double (*motion)[U];                 /* (n_joints) in the last committed step */
-    struct wb_rod_point *points;         /* (n_points) */
-    double (*residual)[U];               /* (n_joints) */
-    double (*middle)[U];                 /* (n_elements) residual of the middle nodes */
-    struct eliminated *eliminated;       /* (n_elements) */
-    double (*diagonal)[U * U];           /* (n_joints) */
-    double (*increment)[U];              /* (n_joints) right-hand side, then the solution */
+    struct wb_rod_node *nodes; /* (3 n_elements) of the trial state */
+    /* (n_joints, n_elements) the nodes, and their motion in the last committed step. */
+    struct wb_rod_node *committed_nodes, *committed_middles;
+    double (*motion)[U], (*middle_motion)[U];
+    struct wb_rod_point *points;   /* (n_points) */
+    double (*residual)[U];         /* (n_joints) */
+    double (*middle)[U];           /* (n_elements) residual of the middle nodes */
+    struct eliminated *eliminated; /* (n_elements) */
+    double (*diagonal)[U * U];     /* (n_joints) */
+    double (*increment)[U];        /* (n_joints) right-hand side, then the solution */
     int negative;
     struct wb_memory memory; /* of all arrays */
 };
@@ -194,8 +196,8 @@ static void add_piece(struct wb_harness *h, const struct wb_harness_model *model
         for (int k = 0; k < 3; k++)
             element->weight[k] = b->mass * model->gravity[k];
         h->history_size += POINTS * element->row;
-        h->joints[element->near].width += 0.5 * length / n;
-        h->joints[e + 1].width += 0.5 * length / n;
+        h->joints[element->near].width += length / n / 6.0;
+        h->joints[e + 1].width += length / n / 6.0;
         own->n++;
     }
 }
@@ -246,7 +248,9 @@ static void take_state_memory(struct wb_harness *h)
     h->yielding = wb_memory_take(m, points, sizeof *h->yielding);
     h->nodes = wb_memory_take(m, NODES * elements, sizeof *h->nodes);
     h->committed_nodes = wb_memory_take(m, joints, sizeof *h->committed_nodes);
+    h->committed_middles = wb_memory_take(m, elements, sizeof *h->committed_middles);
     h->motion = wb_memory_take(m, joints, sizeof *h->motion);
+    h->middle_motion = wb_memory_take(m, elements, sizeof *h->middle_motion);
     h->points = wb_memory_take(m, points, sizeof *h->points);
     h->residual = wb_memory_take(m, joints, sizeof *h->residual);
     h->middle = wb_memory_take(m, elements, sizeof *h->middle);
@@ -382,6 +386,7 @@ enum wb_status wb_harness_create(struct wb_harness **out, const struct wb_harnes
         for (int piece = 0; piece <= b->n_stations; piece++)
             add_piece(h, model, i, piece);
         first += own->n;
+        h->length += b->length;
         /* See wb_beam_noise(). */
         h->noise = fmax(h->noise, 3e-2 * DBL_EPSILON * wb_law_section_stiffness(b->section).axial);
     }
@@ -397,6 +402,8 @@ enum wb_status wb_harness_create(struct wb_harness **out, const struct wb_harnes
     place(h);
     for (int j = 0; j < h->n_joints; j++)
         h->committed_nodes[j] = *node_of(h, j);
+    for (int e = 0; e < h->n_elements; e++)
+        h->committed_middles[e] = h->nodes[NODES * e + 1];
     *out = h;
     return WB_OK;
 }
@@ -492,32 +499,49 @@ static void add_bodies(struct wb_harness *h, double weight)
     }
 }
 
-/* Of a joint's part of the wire; against rotation with half the part as its arm. */
-static double part_of(const struct wb_harness *h, int joint, int component)
+/* The drag of a node's part of the wire, over its coefficient; against rotation with half the part
+ * as its arm. */
+static double part_of(double width, int component)
 {
-    const double width = h->joints[joint].width;
     return component < 3 ? width : 0.25 * width * width * width;
 }
 
-/* From the committed to the trial state: way and rotation vector. */
-static void motion_of(const struct wb_harness *h, int joint, double motion[U])
+/* Way and rotation vector between two states of a node. */
+static void motion_of(const struct wb_rod_node *was, const struct wb_rod_node *now,
+                      double motion[U])
 {
-    const struct wb_rod_node *const now = node_of(h, joint), *const was =
-                                                                 &h->committed_nodes[joint];
     for (int k = 0; k < 3; k++)
         motion[k] = now->position[k] - was->position[k];
     wb_rod_element_turn_between(was->rotation, now->rotation, motion + 3);
 }
 
+static void add_drag_of(const struct wb_harness *h, double width, const struct wb_rod_node *was,
+                        const struct wb_rod_node *now, const double *before, double *residual)
+{
+    double motion[U];
+    motion_of(was, now, motion);
+    for (int k = 0; k < U; k++)
+        residual[k] += part_of(width, k) * (h->drag * motion[k] - h->carried * before[k]);
+}
+
+static double middle_width(const struct element *element)
+{
+    return 4.0 / 6.0 * element->shape.length;
+}
+
+static const struct wb_rod_node *middle_node(const struct wb_harness *h, int e)
+{
+    return &h->nodes[NODES * e + 1];
+}
+
 static void add_drag(struct wb_harness *h)
 {
-    for (int j = 0; j < h->n_joints; j++) {
-        double motion[U];
-        motion_of(h, j, motion);
-        for (int k = 0; k < U; k++)
-            h->residual[j][k] +=
-                part_of(h, j, k) * (h->drag * motion[k] - h->carried * h->motion[j][k]);
-    }
+    for (int j = 0; j < h->n_joints; j++)
+        add_drag_of(h, h->joints[j].width, &h->committed_nodes[j], node_of(h, j), h->motion[j],
+                    h->residual[j]);
+    for (int e = 0; e < h->n_elements; e++)
+        add_drag_of(h, middle_width(&h->elements[e]), &h->committed_middles[e], middle_node(h, e),
+                    h->middle_motion[e], h->middle[e]);
 }
 
 /* How a joint is held: the axes of the bases of its position and of its spin (rows), which of its
@@ -679,6 +703,8 @@ static void condense_element(struct wb_harness *h, int e, double *upper, double 
     double rows[U][WB_ROD_CHAIN_WIDTH] = {{0}};
 
     wb_rod_element_stiffness(&element->shape, &h->points[e * POINTS], &s);
+    for (int k = 0; k < U && h->drag > 0.0; k++)
+        s.K[1][1][(U + 1) * k] += part_of(middle_width(element), k) * h->drag;
     h->negative += wb_signature_negative(U, U, s.K[1][1]);
     for (int r = 0; r < U; r++) {
         memcpy(rows[r], s.K[1][1] + U * r, U * sizeof(double));
@@ -787,7 +813,7 @@ static void add_drag_stiffness(struct wb_harness *h)
 {
     for (int j = 0; j < h->n_joints; j++) {
         for (int k = 0; k < U; k++)
-            h->diagonal[j][(U + 1) * k] += part_of(h, j, k) * h->drag;
+            h->diagonal[j][(U + 1) * k] += part_of(h->joints[j].width, k) * h->drag;
     }
 }
 
@@ -877,8 +903,12 @@ double wb_harness_advance(struct wb_harness *h, double most_rotation)
 static void remember_nodes(struct wb_harness *h)
 {
     for (int j = 0; j < h->n_joints; j++) {
-        motion_of(h, j, h->motion[j]);
+        motion_of(&h->committed_nodes[j], node_of(h, j), h->motion[j]);
         h->committed_nodes[j] = *node_of(h, j);
+    }
+    for (int e = 0; e < h->n_elements; e++) {
+        motion_of(&h->committed_middles[e], middle_node(h, e), h->middle_motion[e]);
+        h->committed_middles[e] = *middle_node(h, e);
     }
 }
 
@@ -1061,26 +1091,26 @@ double wb_harness_plastic_work(const struct wb_harness *harness)
 
 double wb_harness_length(const struct wb_harness *harness)
 {
-    double length = 0.0;
-    for (int i = 0; i < harness->n_branches; i++)
-        length += harness->branches[i].length;
-    return length;
+    return harness->length;
 }
 
 void wb_harness_stiffness(const struct wb_harness *h, double *stiffest, double *softest)
 {
-    const double all = wb_harness_length(h);
     *stiffest = 0.0;
     *softest = (double)INFINITY;
     for (int e = 0; e < h->n_elements; e++) {
         const struct element *const element = &h->elements[e];
         const double EI = wb_law_section_stiffness(element->section).bending;
         *stiffest = fmax(*stiffest, EI / pow(element->shape.length, 4.0));
-        *softest = fmin(*softest, EI / pow(all, 4.0));
+        *softest = fmin(*softest, EI / pow(h->length, 4.0));
     }
 }
 
-double wb_harness_noise(const struct wb_harness *harness)
+double wb_harness_noise(const struct wb_harness *h)
 {
-    return harness->noise;
+    double widest = 0.0;
+    for (int e = 0; e < h->n_elements && h->drag > 0.0; e++)
+        widest = fmax(widest, middle_width(&h->elements[e]));
+    /* Positions are rounded. */
+    return h->noise + 4.0 * DBL_EPSILON * h->drag * widest * h->length;
 }

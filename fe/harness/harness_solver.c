@@ -26,9 +26,11 @@ static const double smallest_increment = 1e-4;
  * chosen so that the fastest joint turns by `turn_part` of what an increment may, and by
  * `curve_part` of it from the line through the last two states; it grows by at most this ratio. A
  * drag below this fraction of the stiffness of the whole harness is left out. */
-static const int max_steps = 1000;
-static const double turn_part = 0.6, curve_part = 0.1, growth = 2.2, shrinkage = 0.3;
+static const int max_steps = 5000;
+static const double turn_part = 0.6, curve_part = 0.1, max_growth = 2.2, max_shrinkage = 0.3;
 static const double last_drag = 1e-4;
+/* The shortest step, in units of the first; a motion that needs a shorter one has failed. */
+static const double least_step = 1e-9;
 
 enum outcome {
     EQUILIBRIUM,
@@ -130,6 +132,15 @@ static double turn_from_remembered(const struct wb_harness_solver *s)
     return largest;
 }
 
+/* Ratio of the next step to this one, by how far the fastest joint turned, and by how far from the
+ * line through the last two states, which are in `before`. */
+static double next_size(const struct wb_harness_solver *s)
+{
+    const double turn = wb_harness_turn(s->harness) / s->most_rotation;
+    const double curve = turn_from_remembered(s) / s->most_rotation;
+    return fmax(fmin(fmin(turn_part / turn, sqrt(curve_part / curve)), max_growth), max_shrinkage);
+}
+
 /* The joint that moved farthest from where it was at `start`. */
 static struct wb_harness_snap measure_snap(const struct wb_harness_solver *s, double fraction)
 {
@@ -160,7 +171,7 @@ static enum outcome settle(struct wb_harness_solver *s, double weight,
     enum outcome outcome = ITERATIONS;
     double size = 1.0 / s->stiffest, last_size = 0.0;
     bool rests = false;
-    for (int step = 0; step < max_steps && !rests; step++) {
+    for (int step = 0; step < max_steps && !rests && size * s->stiffest > least_step; step++) {
         const bool last = size * last_drag * s->softest >= 1.0;
         const double ratio = last_size > 0.0 ? size / last_size : 0.0;
         const double own = (1.0 + 2.0 * ratio) / (1.0 + ratio);
@@ -174,7 +185,7 @@ static enum outcome settle(struct wb_harness_solver *s, double weight,
         outcome = iterate(s, weight, result);
         const double turn = wb_harness_turn(h) / s->most_rotation;
         if (outcome == EQUILIBRIUM) {
-            const double curve = turn_from_remembered(s) / s->most_rotation;
+            const double ratio_next = next_size(s);
             wb_harness_commit(h);
             result->increments++;
             rests = last;
@@ -183,7 +194,7 @@ static enum outcome settle(struct wb_harness_solver *s, double weight,
                 break;
             }
             last_size = size;
-            size *= fmax(fmin(fmin(turn_part / turn, sqrt(curve_part / curve)), growth), shrinkage);
+            size *= ratio_next;
         } else {
             result->cutbacks++;
             size *= outcome == TURNED ? fmax(turn_part / turn, 0.1) : 0.25;
@@ -266,8 +277,12 @@ void wb_harness_solver_move(struct wb_harness_solver *s, const struct wb_harness
         else
             wb_harness_revert(h);
         const int before = result->iterations;
+        double growth_now = max_growth;
+        remember(s, s->before);
         enum outcome outcome = iterate(s, weight, result);
         if (outcome == EQUILIBRIUM) {
+            if (last > 0.0)
+                growth_now = next_size(s);
             wb_harness_commit(h);
         } else if (0.5 * (next - done) >= smallest_increment) {
             wb_harness_revert(h);
@@ -299,7 +314,7 @@ void wb_harness_solver_move(struct wb_harness_solver *s, const struct wb_harness
             break;
         }
         const int iterations = result->iterations - before;
-        size = last * (iterations <= 4 ? 2.0 : iterations <= 7 ? 1.0 : 0.5);
+        size = last * fmin(growth_now, iterations <= 6 ? max_growth : 1.0);
     }
     s->weight += result->fraction * (move->weight - s->weight);
     if (done >= 1.0 && result->end != WB_HARNESS_STOPPED)

@@ -259,7 +259,7 @@ static void work_on_the_wire_is_elastic_or_plastic(void **unused)
     for (int l = 0; l < TEST_LAWS; l += 2) {
         const struct wb_law law = test_laws_get(l);
         struct test_harness t = test_single_branch(section_of(8e-3, &law), 20);
-        const struct wb_harness_solver_model fine = {t.harness, 0.01};
+        const struct wb_harness_solver_model fine = {t.harness, 0.02};
         wb_harness_solver_destroy(t.solver);
         assert_int_equal(wb_harness_solver_create(&t.solver, &fine), WB_OK);
         const int tip = wb_harness_joint(t.harness, 0, 1.0);
