@@ -26,7 +26,7 @@ static const double smallest_increment = 1e-4;
  * chosen so that the fastest joint turns by `turn_part` of what an increment may, and by
  * `curve_part` of it from the line through the last two states; it grows by at most this ratio. A
  * drag below this fraction of the stiffness of the whole harness is left out. */
-static const int max_steps = 5000;
+static const int max_steps = 2000;
 static const double turn_part = 0.6, curve_part = 0.1, max_growth = 2.2, max_shrinkage = 0.3;
 static const double last_drag = 1e-4;
 /* The shortest step, in units of the first; a motion that needs a shorter one has failed. */
