@@ -3,7 +3,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "analysis/harness/harness_drawing.h"
 #include "analysis/harness/harness_output.h"
+#include "analysis/harness/harness_vtk.h"
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/progress.h"
@@ -79,13 +81,17 @@ static void append_trust(struct wb_text *text, const struct wb_harness_result_se
     wb_text_append(text, "; computed, not compared with a measurement");
 }
 
-static enum wb_status deliver(const struct wb_command_common *common,
-                              const struct wb_harness_result_set *set)
+static enum wb_status deliver(const struct wb_command_common *common, const char *vtk,
+                              const char *figure, const struct wb_harness_result_set *set)
 {
     struct wb_text table = {0};
-    struct wb_finding finding = {.figure = NULL};
+    struct wb_finding finding = {.figure = figure[0] ? figure : NULL};
     if (common->output)
         WB_TRY(wb_harness_output_write(set, common->output));
+    if (finding.figure)
+        WB_TRY(wb_harness_drawing_write(set, figure));
+    if (vtk)
+        WB_TRY(wb_harness_vtk_write(set, vtk));
     warn_not_converged(set);
     if (common->json) {
         struct wb_json *const root = wb_json_create();
@@ -98,7 +104,9 @@ static enum wb_status deliver(const struct wb_command_common *common,
     wb_text_release(&table);
     wb_harness_output_append_finding(&finding.found, set);
     append_trust(&finding.trust, set);
-    if (!common->output)
+    if (vtk)
+        wb_finding_append_command(&finding.next, "open the .pvd file in %s with ParaView", vtk);
+    else if (!common->output)
         wb_finding_append_command(&finding.next,
                                   "wirebench solve harness %s -o DIR, for shapes "
                                   "and forces as tables",
@@ -113,7 +121,7 @@ static enum wb_status deliver(const struct wb_command_common *common,
 }
 
 static enum wb_status compute(const struct wb_command_common *common,
-                              const struct wb_solve_settings *settings,
+                              const struct wb_solve_settings *settings, const char *figure,
                               struct wb_harness_plan *plan, struct wb_harness_result_set *set)
 {
     const struct wb_harness_settings s = {.is_elastic = settings->law == WB_SOLVE_ELASTIC,
@@ -125,6 +133,10 @@ static enum wb_status compute(const struct wb_command_common *common,
     WB_TRY(wb_harness_file_read(plan, path));
     if (common->output)
         WB_TRY(wb_file_prepare_output(common->output, common->force));
+    if (settings->vtk)
+        WB_TRY(wb_file_prepare_output(settings->vtk, common->force));
+    if (figure[0])
+        WB_TRY(wb_finding_check_figure(figure, common->force));
     if (!s.is_elastic)
         warn_of_unloading(plan);
     wb_progress_start(&watched.progress, "solve", "steps", plan->n_steps);
@@ -138,11 +150,14 @@ int wb_solve_harness(const struct wb_command_common *common,
 {
     struct wb_harness_plan *const plan = wb_memory_new(1, sizeof *plan);
     struct wb_harness_result_set set = {.plan = NULL};
-    enum wb_status status = compute(common, settings, plan, &set);
+    char figure[WB_PATH] = "";
+    if (common->output && !common->no_figure)
+        wb_finding_folder_figure_path(figure, common->output);
+    enum wb_status status = compute(common, settings, figure, plan, &set);
     bool complete = true;
     if (status == WB_OK) {
         complete = set.converged;
-        status = deliver(common, &set);
+        status = deliver(common, settings->vtk, figure, &set);
     }
     wb_harness_run_release(&set);
     free(plan);

@@ -14,6 +14,7 @@ done
 [ "$(grep -c 'step [67], .*fitted on loading only: trunk (bundle-7.yaml), lead' warned)" -eq 2 ] ||
     fail "what is released is not warned of: $(cat warned)"
 [ "$(ls out)" = "$(printf 'forces.csv\nharness.json\nshapes.csv')" ] || fail "files: $(ls out)"
+grep -q 'simulation, elastoplastic' out.svg || fail 'the drawing does not say what it is'
 "$wirebench" info out >kind && grep -q 'solve harness' kind || fail "info out: $(cat kind)"
 "$wirebench" solve harness small --json >out.json 2>/dev/null || fail 'solve harness --json'
 cmp -s out.json out/harness.json || fail '--json and harness.json differ'
@@ -59,6 +60,14 @@ result = json.load(open(sys.argv[1] + "/harness.json"))
 assert result["law"] == "elastic" and result["residual_shape"]["distance_mm"] < 1e-5
 PYTHON
 
+"$wirebench" solve harness small --law elastic --vtk vtk -o plain --no-figure >said || fail '--vtk'
+[ ! -e plain.svg ] || fail '--no-figure draws a figure'
+[ "$(ls vtk | grep -c 'small-000[0-7].vtu')" -eq 8 ] && [ "$(grep -c small-000 vtk/small.pvd)" -eq 8 ] ||
+    fail "VTK files: $(ls vtk)"
+for array in position_mm curvature_1_m moment_N_mm torque_N_mm tension_N branch; do
+    grep -aq "Name=\"$array\"" vtk/small-0003.vtu || fail "no $array in the VTK files"
+done
+
 # A properties file of `calibrate` is a wire, with unloading and a range of curvatures.
 sed "s|wire: type3|wire: $root/docs/cards/type1.yaml|" "$root/fixtures/harnesses/small.yaml" >own.yaml
 "$wirebench" solve harness own.yaml -o own >said 2>warned || fail "properties: $(cat warned)"
@@ -74,6 +83,7 @@ ends_with() { # CODE WORDS ARGUMENTS...
     grep -qF -- "$words" said || fail "$*: '$words' is not said: $(cat said)"
 }
 ends_with 1 --force solve harness small -o out
+ends_with 1 --force solve harness small -o other --vtk vtk
 ends_with 0 found solve harness small -o out --force
 ends_with 2 'HARNESS.yaml' solve harness
 ends_with 1 'a wire file' solve harness "$root/fixtures/wires/type3.yaml"
