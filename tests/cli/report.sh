@@ -32,6 +32,7 @@ for file in report.pdf report.html report.json; do
     [ -s "$folder/r/$file" ] || fail "no $file"
     grep -qF "$folder/r/$file" "$folder/out" || fail "$file is not named"
 done
+grep -q 'not used: type1, 85 mm, sample 1: ' "$folder/out" || fail 'a missing recording is not named'
 grep -qF 'calibration missing' "$folder/out" || fail 'the missing calibration is not named'
 [ "$(find "$folder/r" -name '.new*' | wc -l)" -eq 0 ] || fail 'something half-written is left'
 

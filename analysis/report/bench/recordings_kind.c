@@ -52,6 +52,17 @@ static void print_cycle(FILE *out, const struct wb_recordings_cycle *cycle)
         fprintf(out, ", residual curvature ratio %.3f", c->residual_curvature_ratio.value);
 }
 
+/* Each recording that is missing or was rejected, with the reason. */
+static void print_missing(FILE *out, const struct wb_recordings_results *results)
+{
+    const struct wb_recordings_results_test *test;
+    for (int i = 0; (test = wb_recordings_results_at(results, i, NULL, NULL)); i++) {
+        if (!test->usable && !test->wanted->excluded.is_excluded)
+            fprintf(out, "  not used: %s: %s\n", test->wanted->name,
+                    wb_text_string(&test->problem));
+    }
+}
+
 static void print(FILE *out, const void *context)
 {
     const struct wb_recordings_results *const results = context;
@@ -59,6 +70,7 @@ static void print(FILE *out, const void *context)
     fprintf(out, "%s%s: %d of %d recordings used\n", campaign->head.title,
             results->any_virtual ? " (virtual rig)" : "", results->outcome.n_usable,
             results->outcome.n_wanted);
+    print_missing(out, results);
     for (int i = 0; i < results->n_wires; i++) {
         fprintf(out, "%-10s", results->wires[i].wanted->label);
         print_cycle(out, wb_recordings_results_cycle(&results->wires[i]));

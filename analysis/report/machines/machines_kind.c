@@ -344,6 +344,11 @@ static void print(FILE *out, const void *context)
                 campaign->environment);
     for (int g = 0; g < campaign->n_groups; g++) {
         const struct wb_machines_group_results *const of = &results->groups[g];
+        for (int i = 0; i < campaign->groups[g].n_tests && results->has_folder; i++) {
+            if (!of->tests[i].is_usable)
+                fprintf(out, "  not used: %s: %s\n", wb_file_name(campaign->groups[g].tests[i]),
+                        wb_text_string(&of->tests[i].problem));
+        }
         if (of->n_usable > 0)
             fprintf(out, "  %-40s F L^3/48 d = %.4g N mm2, s = %.2g\n", campaign->groups[g].label,
                     of->rigidity / WB_NMM2, of->rigidity_deviation / WB_NMM2);
