@@ -37,8 +37,8 @@ struct wb_wire {
 };
 
 /* Reads a wire file, or the properties file that `wirebench calibrate -o` writes, whose conductor
- * diameter is 0: not known. Errors name file, line and key; they go to `why`, or to the log where that is
- * NULL. */
+ * diameter is 0: not known. Errors name file, line and key; they go to `why`, or to the log where
+ * that is NULL. */
 WB_MUST_CHECK enum wb_status wb_wire_read(const char *path, struct wb_wire *wire,
                                           struct wb_reason *why);
 

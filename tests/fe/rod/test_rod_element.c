@@ -1,7 +1,6 @@
 /* Kinematics, forces and stiffness of the rod's element. */
 #include "base/vec3.h"
 #include "fe/rod/rod_element.h"
-#include "fe/rod/rod_element.h"
 
 #include "tests/fe/rod/wires.h"
 
