@@ -81,8 +81,9 @@ static void append_trust(struct wb_text *text, const struct wb_harness_result_se
     wb_text_append(text, "; computed, not compared with a measurement");
 }
 
-static enum wb_status deliver(const struct wb_command_common *common, const char *vtk,
-                              const char *figure, const struct wb_harness_result_set *set)
+static enum wb_status deliver(const struct wb_command_common *common,
+                              const struct wb_solve_settings *settings, const char *figure,
+                              const struct wb_harness_result_set *set)
 {
     struct wb_text table = {0};
     struct wb_finding finding = {.figure = figure[0] ? figure : NULL};
@@ -90,8 +91,8 @@ static enum wb_status deliver(const struct wb_command_common *common, const char
         WB_TRY(wb_harness_output_write(set, common->output));
     if (finding.figure)
         WB_TRY(wb_harness_drawing_write(set, figure));
-    if (vtk)
-        WB_TRY(wb_harness_vtk_write(set, vtk));
+    if (settings->vtk)
+        WB_TRY(wb_harness_vtk_write(set, settings->vtk));
     warn_not_converged(set);
     if (common->json) {
         struct wb_json *const root = wb_json_create();
@@ -104,18 +105,19 @@ static enum wb_status deliver(const struct wb_command_common *common, const char
     wb_text_release(&table);
     wb_harness_output_append_finding(&finding.found, set);
     append_trust(&finding.trust, set);
-    if (vtk)
-        wb_finding_append_command(&finding.next, "open the .pvd file in %s with ParaView", vtk);
+    if (settings->vtk)
+        wb_finding_append_command(&finding.next, "open the .pvd file in %s with ParaView",
+                                  settings->vtk);
     else if (!common->output)
         wb_finding_append_command(&finding.next,
                                   "wirebench solve harness %s -o DIR, for shapes "
                                   "and forces as tables",
-                                  set->plan->path);
+                                  settings->model);
     else if (!set->settings.is_elastic)
         wb_finding_append_command(&finding.next,
                                   "wirebench solve harness %s --law elastic, for "
                                   "the same without yielding",
-                                  set->plan->path);
+                                  settings->model);
     wb_finding_print(&finding);
     return WB_OK;
 }
@@ -157,7 +159,7 @@ int wb_solve_harness(const struct wb_command_common *common,
     bool complete = true;
     if (status == WB_OK) {
         complete = set.converged;
-        status = deliver(common, settings->vtk, figure, &set);
+        status = deliver(common, settings, figure, &set);
     }
     wb_harness_run_release(&set);
     free(plan);
