@@ -17,7 +17,8 @@ enum {
     DEFAULT_ELEMENTS = 100,
     POINTS = WB_ROD_ELEMENT_POINTS,
     NODES = WB_ROD_ELEMENT_NODES,
-    U = WB_ROD_ELEMENT_UNKNOWNS
+    U = WB_ROD_ELEMENT_UNKNOWNS,
+    MAX_PARTS = 32 /* of the state */
 };
 
 /* Elimination of an element's middle node from its end nodes: d2 = -w - W1 d1 - W3 d3; and of its
@@ -977,6 +978,69 @@ void wb_harness_commit(struct wb_harness *h)
     h->history = h->trial_history;
     h->trial_history = old;
     remember_nodes(h);
+}
+
+/* The parts of the state in the order in which they are saved: all that outlives an evaluation, and
+ * the results of the last one. */
+struct part {
+    void *at;
+    size_t size;
+};
+
+static size_t list_parts(struct wb_harness *h, struct part parts[MAX_PARTS])
+{
+    const size_t elements = (size_t)h->n_elements, points = (size_t)h->n_points;
+    const size_t joints = (size_t)h->n_joints;
+    const struct part list[] = {
+        {h->joints, joints * sizeof *h->joints},
+        {&h->drag, sizeof h->drag},
+        {&h->carried, sizeof h->carried},
+        {&h->weight, sizeof h->weight},
+        {h->trial, points * sizeof *h->trial},
+        {h->committed, points * sizeof *h->committed},
+        {h->earlier, points * sizeof *h->earlier},
+        {&h->root, sizeof h->root},
+        {&h->committed_root, sizeof h->committed_root},
+        {&h->earlier_root, sizeof h->earlier_root},
+        {h->yielding, points * sizeof *h->yielding},
+        {&h->plastic_work, sizeof h->plastic_work},
+        {h->history, h->history_size * sizeof *h->history},
+        {h->nodes, NODES * elements * sizeof *h->nodes},
+        {h->committed_nodes, joints * sizeof *h->committed_nodes},
+        {h->committed_middles, elements * sizeof *h->committed_middles},
+        {h->motion, joints * sizeof *h->motion},
+        {h->middle_motion, elements * sizeof *h->middle_motion},
+        {h->points, points * sizeof *h->points},
+        {h->residual, joints * sizeof *h->residual},
+    };
+    _Static_assert(sizeof list / sizeof *list <= MAX_PARTS, "parts of the state");
+    memcpy(parts, list, sizeof list);
+    return sizeof list / sizeof *list;
+}
+
+size_t wb_harness_state_size(const struct wb_harness *harness)
+{
+    struct part parts[MAX_PARTS];
+    size_t size = 0;
+    for (size_t i = list_parts((struct wb_harness *)harness, parts); i > 0; i--)
+        size += parts[i - 1].size;
+    return size;
+}
+
+void wb_harness_save(const struct wb_harness *harness, void *state)
+{
+    struct part parts[MAX_PARTS];
+    const size_t n = list_parts((struct wb_harness *)harness, parts);
+    for (size_t i = 0, at = 0; i < n; at += parts[i++].size)
+        memcpy((char *)state + at, parts[i].at, parts[i].size);
+}
+
+void wb_harness_restore(struct wb_harness *harness, const void *state)
+{
+    struct part parts[MAX_PARTS];
+    const size_t n = list_parts(harness, parts);
+    for (size_t i = 0, at = 0; i < n; at += parts[i++].size)
+        memcpy(parts[i].at, (const char *)state + at, parts[i].size);
 }
 
 double wb_harness_turn(const struct wb_harness *h)

@@ -17,6 +17,8 @@
 #ifndef WB_FE_HARNESS_HARNESS_H
 #define WB_FE_HARNESS_HARNESS_H
 
+#include <stddef.h>
+
 #include "base/status.h"
 #include "fe/rod/law_section.h"
 #include "fe/rod/rod_element.h"
@@ -124,6 +126,13 @@ void wb_harness_extrapolate(struct wb_harness *harness, double ratio);
 
 /* Commits the trial state, which must have been evaluated since it last moved. */
 void wb_harness_commit(struct wb_harness *harness);
+
+/* Copies the whole state, with holds, loads, history and plastic work, to memory of the caller, of
+ * wb_harness_state_size() bytes, and back: all that follows is then the same, bit for bit. The
+ * memory is for this harness, or one of the same model. */
+size_t wb_harness_state_size(const struct wb_harness *harness);
+void wb_harness_save(const struct wb_harness *harness, void *state);
+void wb_harness_restore(struct wb_harness *harness, const void *state);
 
 /* Largest rotation of a joint of the trial state since the last commit, rad. */
 double wb_harness_turn(const struct wb_harness *harness);

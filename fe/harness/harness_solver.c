@@ -49,6 +49,7 @@ struct wb_harness_solver {
     double weight;            /* of the last equilibrium */
     struct wb_rod_node *from, *before, *start; /* (joints) */
     double (*from_load)[6];                    /* (joints) */
+    void *rest;                                /* state of the harness where a stable path ends */
     struct wb_memory memory;
 };
 
@@ -69,6 +70,7 @@ enum wb_status wb_harness_solver_create(struct wb_harness_solver **out,
     s->start = wb_memory_take(&s->memory, joints, sizeof *s->start);
     s->before = wb_memory_take(&s->memory, joints, sizeof *s->before);
     s->from_load = wb_memory_take(&s->memory, joints, sizeof *s->from_load);
+    s->rest = wb_memory_take(&s->memory, wb_harness_state_size(model->harness), 1);
     *out = s;
     return WB_OK;
 }
@@ -262,6 +264,15 @@ static void begin(struct wb_harness_solver *s, const struct wb_harness_move *mov
         wb_harness_load(s->harness, move->loads[i].joint, s->from_load[i]);
 }
 
+/* Back to the last equilibrium, at a fraction of the move. */
+static void go_back(struct wb_harness_solver *s, const struct wb_harness_move *move,
+                    double fraction)
+{
+    struct wb_harness_balance balance;
+    wb_harness_restore(s->harness, s->rest);
+    wb_harness_evaluate(s->harness, aim(s, move, fraction), &balance);
+}
+
 void wb_harness_solver_move(struct wb_harness_solver *s, const struct wb_harness_move *move,
                             struct wb_harness_result *result)
 {
@@ -293,12 +304,13 @@ void wb_harness_solver_move(struct wb_harness_solver *s, const struct wb_harness
             /* The stable path ends here. */
             wb_harness_revert(h);
             remember(s, s->start);
+            wb_harness_save(h, s->rest);
             const enum outcome why = outcome;
             outcome = settle(s, weight, move, next, result);
             if (outcome != EQUILIBRIUM) {
                 result->problem = outcome == STOPPED ? NULL : words_for(why);
                 result->end = outcome == STOPPED ? WB_HARNESS_STOPPED : WB_HARNESS_NOT_CONVERGED;
-                (void)aim(s, move, done);
+                go_back(s, move, done);
                 break;
             }
             if (result->n_snaps < WB_HARNESS_MOST_SNAPS)
@@ -338,4 +350,21 @@ void wb_harness_solver_settle(struct wb_harness_solver *s, double weight,
     } else {
         result->problem = words_for(outcome);
     }
+}
+
+size_t wb_harness_solver_state_size(const struct wb_harness_solver *solver)
+{
+    return sizeof solver->weight + wb_harness_state_size(solver->harness);
+}
+
+void wb_harness_solver_save(const struct wb_harness_solver *solver, void *state)
+{
+    memcpy(state, &solver->weight, sizeof solver->weight);
+    wb_harness_save(solver->harness, (char *)state + sizeof solver->weight);
+}
+
+void wb_harness_solver_restore(struct wb_harness_solver *solver, const void *state)
+{
+    memcpy(&solver->weight, state, sizeof solver->weight);
+    wb_harness_restore(solver->harness, (const char *)state + sizeof solver->weight);
 }

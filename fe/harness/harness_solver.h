@@ -90,4 +90,9 @@ void wb_harness_solver_settle(struct wb_harness_solver *solver, double weight,
                               bool (*observer)(void *context, double fraction), void *context,
                               struct wb_harness_result *result);
 
+/* wb_harness_save() and its counterparts, with the state of the solver. */
+size_t wb_harness_solver_state_size(const struct wb_harness_solver *solver);
+void wb_harness_solver_save(const struct wb_harness_solver *solver, void *state);
+void wb_harness_solver_restore(struct wb_harness_solver *solver, const void *state);
+
 #endif

@@ -351,6 +351,103 @@ static void plastic_tree_keeps_a_shape_after_release(void **unused)
     release_tree(&hanging);
 }
 
+/* All that can be read from a harness; the caller frees it. */
+struct readings {
+    struct wb_rod_node node[200];
+    double reaction[200][6];
+    struct wb_harness_point points[400];
+    double elastic, plastic, weight[6];
+};
+
+static struct readings *read_all(const struct tree *tree)
+{
+    const struct wb_harness *const h = tree->t.harness;
+    struct readings *const r = calloc(1, sizeof *r);
+    assert_non_null(r);
+    assert_true(wb_harness_n_joints(h) <= 200 && wb_harness_n_points(h) <= 400);
+    for (int j = 0; j < wb_harness_n_joints(h); j++) {
+        r->node[j] = *wb_harness_node(h, j);
+        wb_harness_reaction(h, j, r->reaction[j]);
+    }
+    for (int g = 0; g < wb_harness_n_points(h); g++)
+        wb_harness_point(h, g, &r->points[g]);
+    r->elastic = wb_harness_elastic_energy(h);
+    r->plastic = wb_harness_plastic_work(h);
+    wb_harness_weight(h, r->weight);
+    return r;
+}
+
+static void check_readings(const struct tree *tree, const struct readings *expected)
+{
+    struct readings *const r = read_all(tree);
+    assert_memory_equal(r, expected, sizeof *r);
+    free(r);
+}
+
+/* A release, then a move with a load and half the weight. */
+static void release_and_load(struct tree *tree)
+{
+    static const double clip[3] = {0.18, 0.0, 0.03}, turn[3] = {0.0, -0.1, 0.2};
+    const struct wb_harness_aim aim = {tree->clip, place(tree, clip, turn)};
+    const struct wb_harness_load load = {tree->end, {0.0, 0.02, 0.03}};
+    struct wb_harness_result result;
+    wb_harness_set_hold(tree->t.harness, tree->end, WB_HARNESS_FREE, NULL);
+    wb_harness_solver_settle(tree->t.solver, 1.0, NULL, NULL, &result);
+    assert_int_equal(result.end, WB_HARNESS_CONVERGED);
+    const struct wb_harness_move move = {
+        .n_aims = 1, .aims = &aim, .n_loads = 1, .loads = &load, .weight = 0.5};
+    (void)test_harness_move(&tree->t, &move);
+}
+
+/* The unbalanced force of a state extrapolated by the last step, against a drag that depends on it.
+ */
+static double extrapolated_residual(const struct tree *tree)
+{
+    struct wb_harness *const h = tree->t.harness;
+    struct wb_harness_balance balance;
+    wb_harness_set_drag(h, 10.0, 5.0);
+    wb_harness_extrapolate(h, 0.5);
+    wb_harness_evaluate(h, 1.0, &balance);
+    return balance.largest_residual;
+}
+
+static void steps_after_a_restored_state_are_the_same_bit_for_bit(void **unused)
+{
+    (void)unused;
+    for (int l = 0; l < TEST_LAWS; l++) {
+        const struct wb_law law = test_laws_get(l);
+        struct tree tree, other;
+        make_tree(&tree, &law, &test_origin, false);
+        make_tree(&other, &law, &test_origin, false);
+        void *const state = calloc(1, wb_harness_solver_state_size(tree.t.solver));
+        assert_non_null(state);
+        assemble(&tree);
+        wb_harness_solver_save(tree.t.solver, state);
+        struct readings *const before = read_all(&tree);
+        const double residual = extrapolated_residual(&tree);
+        wb_harness_solver_restore(tree.t.solver, state);
+        release_and_load(&tree);
+        struct readings *const after = read_all(&tree);
+        assert_memory_not_equal(before, after, sizeof *before);
+
+        /* The same harness, and one that was only created. */
+        struct tree *const both[] = {&tree, &other};
+        for (int i = 0; i < 2; i++) {
+            wb_harness_solver_restore(both[i]->t.solver, state);
+            check_readings(both[i], before);
+            assert_true(extrapolated_residual(both[i]) == residual);
+            wb_harness_solver_restore(both[i]->t.solver, state);
+            release_and_load(both[i]);
+            check_readings(both[i], after);
+        }
+        free(state);
+        free(before);
+        free(after);
+        release_tree(&tree);
+        release_tree(&other);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -360,6 +457,7 @@ int main(void)
         cmocka_unit_test(work_on_the_wire_is_elastic_or_plastic),
         cmocka_unit_test(elastic_tree_returns_after_release),
         cmocka_unit_test(plastic_tree_keeps_a_shape_after_release),
+        cmocka_unit_test(steps_after_a_restored_state_are_the_same_bit_for_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
