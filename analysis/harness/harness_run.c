@@ -9,19 +9,26 @@
 
 #define WB_LOG_DOMAIN "harness"
 
-struct run {
-    struct wb_harness_result_set *set;
+/* What is saved beside the solver's state. */
+struct own_state {
+    double weight;                                    /* factor on the weight */
+    double largest_bending[WB_HARNESS_MOST_BRANCHES]; /* from the first step on */
+};
+
+struct wb_harness_run {
     const struct wb_harness_plan *plan;
+    struct wb_harness_settings settings;
     struct wb_law_section *sections[WB_HARNESS_MOST_WIRES];
     struct wb_harness *harness;
     struct wb_harness_solver *solver;
     int joints[WB_HARNESS_MOST_ITEMS];
     int begins[WB_HARNESS_MOST_BRANCHES]; /* first place of each branch */
-    double weight;                        /* factor on the weight */
+    int n_places;
+    struct own_state own;
+    void *before; /* state before a release */
     /* Of the current step. */
-    int step;
     struct wb_harness_step_result *result;
-    bool (*progress)(void *context, int step, double fraction);
+    bool (*watch)(void *context, double fraction);
     void *context;
 };
 
@@ -37,18 +44,18 @@ double wb_harness_run_torsion(const struct wb_harness_plan *plan, int wire,
                : settings->torsion * EI / (1.0 + w->law.material.poissons_ratio);
 }
 
-static enum wb_status make_section(struct run *run, int i)
+static enum wb_status make_section(struct wb_harness_run *run, int i)
 {
     const struct wb_harness_wire *const wire = &run->plan->wires[i];
     const struct wb_law_part part = {wire->law.material.youngs_modulus, (double)INFINITY};
     struct wb_law law = wire->law;
-    if (run->set->settings.is_elastic)
+    if (run->settings.is_elastic)
         wb_law_init_parallel(&law, &part, 1, 0.0, wire->law.material.poissons_ratio);
     const struct wb_law_section_model model = {
         .diameter = wire->diameter,
         .law = &law,
-        .torsional_stiffness = wb_harness_run_torsion(run->plan, i, &run->set->settings),
-        .fibres = run->set->settings.fibres,
+        .torsional_stiffness = wb_harness_run_torsion(run->plan, i, &run->settings),
+        .fibres = run->settings.fibres,
     };
     return wb_law_section_create(&run->sections[i], &model);
 }
@@ -88,7 +95,7 @@ static int find_stations(const struct wb_harness_plan *plan, int branch, double 
     return n;
 }
 
-static enum wb_status make_harness(struct run *run)
+static enum wb_status make_harness(struct wb_harness_run *run)
 {
     const struct wb_harness_plan *const plan = run->plan;
     const size_t n = (size_t)plan->n_branches;
@@ -100,7 +107,7 @@ static enum wb_status make_harness(struct run *run)
         .n_branches = plan->n_branches,
         .branches = branches,
         .bodies = bodies,
-        .element_length = run->set->settings.element_length,
+        .element_length = run->settings.element_length,
         .root = plan->root,
     };
     memcpy(model.gravity, plan->gravity, sizeof model.gravity);
@@ -136,20 +143,18 @@ static enum wb_status make_harness(struct run *run)
             plan->items[i].branch < 0
                 ? 0
                 : wb_harness_joint(run->harness, plan->items[i].branch, plan->items[i].at);
-    const struct wb_harness_solver_model solver = {
-        .harness = run->harness, .most_rotation = run->set->settings.most_rotation};
+    const struct wb_harness_solver_model solver = {.harness = run->harness,
+                                                   .most_rotation = run->settings.most_rotation};
     return wb_harness_solver_create(&run->solver, &solver);
 }
 
 /* --- results --- */
 
 /* Two places an element, its points, and those of the branch's beginning and end. */
-static void plan_places(struct run *run)
+static void plan_places(struct wb_harness_run *run)
 {
-    struct wb_harness_result_set *const set = run->set;
     const int n_points = wb_harness_n_points(run->harness);
-    set->n_elements = n_points / 2;
-    set->n_places = n_points + 2 * run->plan->n_branches;
+    run->n_places = n_points + 2 * run->plan->n_branches;
     for (int i = 0, next = 0, g = 0; i < run->plan->n_branches; i++) {
         struct wb_harness_point point;
         run->begins[i] = next++;
@@ -162,7 +167,8 @@ static void plan_places(struct run *run)
     }
 }
 
-static void set_place(const struct run *run, struct wb_harness_place *place, int branch, double s)
+static void set_place(const struct wb_harness_run *run, struct wb_harness_place *place, int branch,
+                      double s)
 {
     const struct wb_rod_node node = wb_harness_position(run->harness, branch, s);
     double R[9];
@@ -175,7 +181,7 @@ static void set_place(const struct run *run, struct wb_harness_place *place, int
 }
 
 /* The curve's values at an end of a branch are those of its nearest point. */
-static void take_places(const struct run *run, struct wb_harness_place *places)
+static void take_places(const struct wb_harness_run *run, struct wb_harness_place *places)
 {
     const int n_points = wb_harness_n_points(run->harness);
     int next[WB_HARNESS_MOST_BRANCHES];
@@ -208,12 +214,12 @@ static void take_places(const struct run *run, struct wb_harness_place *places)
     }
 }
 
-static bool is_held(const struct run *run, int item)
+static bool is_held(const struct wb_harness_run *run, int item)
 {
     return wb_harness_hold(run->harness, run->joints[item]) != WB_HARNESS_FREE;
 }
 
-static void take_forces(const struct run *run)
+static void take_forces(const struct wb_harness_run *run)
 {
     for (int i = 0; i < run->plan->n_items; i++) {
         struct wb_harness_force *const f = &run->result->forces[i];
@@ -235,7 +241,7 @@ static void take_forces(const struct run *run)
 }
 
 /* Bend radii and curvatures of the current state. */
-static void watch_branches(const struct run *run, bool at_end)
+static void watch_branches(struct wb_harness_run *run, bool at_end)
 {
     for (int g = 0; g < wb_harness_n_points(run->harness); g++) {
         struct wb_harness_point point;
@@ -244,7 +250,8 @@ static void watch_branches(const struct run *run, bool at_end)
         const struct wb_harness_plan_branch *const plan = &run->plan->branches[point.branch];
         const double bending = hypot(point.bending[1], point.bending[2]);
         const double radius = 1.0 / hypot(point.curvature[1], point.curvature[2]);
-        b->largest_bending_so_far = fmax(b->largest_bending_so_far, bending);
+        double *const so_far = &run->own.largest_bending[point.branch];
+        *so_far = b->largest_bending_so_far = fmax(*so_far, bending);
         b->is_beyond = b->largest_bending_so_far > run->plan->wires[plan->wire].largest_curvature;
         b->exceeds_radius |= plan->least_radius > 0.0 && radius < plan->least_radius;
         if (!at_end)
@@ -259,7 +266,7 @@ static void watch_branches(const struct run *run, bool at_end)
 
 static bool observe(void *context, double fraction)
 {
-    struct run *const run = context;
+    struct wb_harness_run *const run = context;
     for (int i = 0; i < run->plan->n_items; i++) {
         const struct wb_harness_item *const item = &run->plan->items[i];
         struct wb_harness_force *const f = &run->result->forces[i];
@@ -273,12 +280,12 @@ static bool observe(void *context, double fraction)
         f->exceeds_moment = item->largest_moment > 0.0 && f->largest_moment > item->largest_moment;
     }
     watch_branches(run, false);
-    return !run->progress || run->progress(run->context, run->step, fraction);
+    return !run->watch || run->watch(run->context, fraction);
 }
 
 /* --- steps --- */
 
-static void move(struct run *run, const struct wb_harness_step *step,
+static void move(struct wb_harness_run *run, const struct wb_harness_step *step,
                  struct wb_harness_result *result)
 {
     const int joint = run->joints[step->item];
@@ -291,37 +298,49 @@ static void move(struct run *run, const struct wb_harness_step *step,
         wb_harness_file_rotation(step->direction, step->has_up ? step->up : NULL, now->rotation,
                                  aim.target.rotation);
     const struct wb_harness_move m = {
-        .n_aims = 1, .aims = &aim, .weight = run->weight, .observer = observe, .context = run};
+        .n_aims = 1, .aims = &aim, .weight = run->own.weight, .observer = observe, .context = run};
     wb_harness_solver_move(run->solver, &m, result);
 }
 
-static void compute_step(struct run *run, const struct wb_harness_step *step,
+/* Lets go of what a step names. Without an equilibrium it stays held. */
+static void let_go(struct wb_harness_run *run, const struct wb_harness_step *step,
+                   struct wb_harness_result *result)
+{
+    wb_harness_run_save(run, run->before);
+    if (step->kind == WB_HARNESS_RELEASE) {
+        wb_harness_set_hold(run->harness, run->joints[step->item], WB_HARNESS_FREE, NULL);
+    } else {
+        for (int i = 1; i < run->plan->n_items; i++)
+            wb_harness_set_hold(run->harness, run->joints[i], WB_HARNESS_FREE, NULL);
+        wb_harness_set_hold(run->harness, 0, WB_HARNESS_FIXED, wb_harness_node(run->harness, 0));
+        run->own.weight = 0.0;
+    }
+    wb_harness_solver_settle(run->solver, run->own.weight, observe, run, result);
+    if (result->end != WB_HARNESS_CONVERGED)
+        wb_harness_run_restore(run, run->before);
+}
+
+static void compute_step(struct wb_harness_run *run, const struct wb_harness_step *step,
                          struct wb_harness_result *result)
 {
     const struct wb_harness_move hang = {.weight = 1.0, .observer = observe, .context = run};
     switch (step->kind) {
     case WB_HARNESS_HANG:
-        run->weight = 1.0;
+        run->own.weight = 1.0;
         wb_harness_solver_move(run->solver, &hang, result);
-        return;
+        break;
     case WB_HARNESS_MOUNT:
     case WB_HARNESS_MOVE:
         move(run, step, result);
-        return;
-    case WB_HARNESS_RELEASE:
-        wb_harness_set_hold(run->harness, run->joints[step->item], WB_HARNESS_FREE, NULL);
         break;
+    case WB_HARNESS_RELEASE:
     case WB_HARNESS_TAKE_OFF:
-        for (int i = 1; i < run->plan->n_items; i++)
-            wb_harness_set_hold(run->harness, run->joints[i], WB_HARNESS_FREE, NULL);
-        wb_harness_set_hold(run->harness, 0, WB_HARNESS_FIXED, wb_harness_node(run->harness, 0));
-        run->weight = 0.0;
+        let_go(run, step, result);
         break;
     }
-    wb_harness_solver_settle(run->solver, run->weight, observe, run, result);
 }
 
-static void take_step(struct run *run, const struct wb_harness_result *result)
+static void take_step(struct wb_harness_run *run, const struct wb_harness_result *result)
 {
     struct wb_harness_step_result *const r = run->result;
     double s;
@@ -344,49 +363,150 @@ static void take_step(struct run *run, const struct wb_harness_result *result)
     take_places(run, r->places);
 }
 
-static void begin_step(struct run *run, int step)
+void wb_harness_run_take_memory(const struct wb_harness_run *run, struct wb_memory *memory,
+                                struct wb_harness_step_result *result)
 {
-    struct wb_harness_result_set *const set = run->set;
-    struct wb_harness_step_result *const r = &set->results[step];
-    const size_t branches = (size_t)run->plan->n_branches;
-    run->step = step;
-    run->result = r;
-    r->forces = wb_memory_take(set->memory, (size_t)run->plan->n_items, sizeof *r->forces);
-    r->branches = wb_memory_take(set->memory, branches, sizeof *r->branches);
-    r->places = wb_memory_take(set->memory, (size_t)set->n_places, sizeof *r->places);
-    for (int i = 0; i < run->plan->n_branches; i++) {
-        r->branches[i].least_radius = (double)INFINITY;
-        if (step > 0)
-            r->branches[i].largest_bending_so_far =
-                set->results[step - 1].branches[i].largest_bending_so_far;
-    }
+    const size_t items = (size_t)run->plan->n_items, branches = (size_t)run->plan->n_branches;
+    result->forces = wb_memory_take(memory, items, sizeof *result->forces);
+    result->branches = wb_memory_take(memory, branches, sizeof *result->branches);
+    result->places = wb_memory_take(memory, (size_t)run->n_places, sizeof *result->places);
 }
 
-static enum wb_status compute(struct run *run)
+static void begin_result(struct wb_harness_run *run, struct wb_harness_step_result *result)
 {
-    struct wb_harness_result_set *const set = run->set;
+    run->result = result;
+    memset(result->forces, 0, (size_t)run->plan->n_items * sizeof *result->forces);
+    for (int i = 0; i < run->plan->n_branches; i++)
+        result->branches[i] = (struct wb_harness_branch_result){
+            .least_radius = (double)INFINITY,
+            .largest_bending_so_far = run->own.largest_bending[i],
+        };
+}
+
+void wb_harness_run_step(struct wb_harness_run *run, const struct wb_harness_step *step,
+                         bool (*watch)(void *context, double fraction), void *context,
+                         struct wb_harness_step_result *result)
+{
+    struct wb_harness_result computed;
+    run->watch = watch;
+    run->context = context;
+    begin_result(run, result);
+    compute_step(run, step, &computed);
+    take_step(run, &computed);
+}
+
+void wb_harness_run_begin(struct wb_harness_run *run, struct wb_harness_step_result *result)
+{
+    const struct wb_harness_result none = {.end = WB_HARNESS_CONVERGED, .fraction = 1.0};
+    begin_result(run, result);
+    take_step(run, &none);
+}
+
+/* --- the state --- */
+
+size_t wb_harness_run_state_size(const struct wb_harness_run *run)
+{
+    return sizeof run->own + wb_harness_solver_state_size(run->solver);
+}
+
+void wb_harness_run_save(const struct wb_harness_run *run, void *state)
+{
+    memcpy(state, &run->own, sizeof run->own);
+    wb_harness_solver_save(run->solver, (char *)state + sizeof run->own);
+}
+
+void wb_harness_run_restore(struct wb_harness_run *run, const void *state)
+{
+    memcpy(&run->own, state, sizeof run->own);
+    wb_harness_solver_restore(run->solver, (const char *)state + sizeof run->own);
+}
+
+struct wb_rod_node wb_harness_run_item(const struct wb_harness_run *run, int item)
+{
+    return *wb_harness_node(run->harness, run->joints[item]);
+}
+
+int wb_harness_run_n_places(const struct wb_harness_run *run)
+{
+    return run->n_places;
+}
+
+static enum wb_status create(struct wb_harness_run *run)
+{
     struct wb_harness_balance balance;
-    double weight[6];
     for (int i = 0; i < run->plan->n_wires; i++)
         WB_TRY(make_section(run, i));
     WB_TRY(make_harness(run));
     plan_places(run);
-    set->results = wb_memory_take(set->memory, (size_t)run->plan->n_steps, sizeof *set->results);
-    set->natural = wb_memory_take(set->memory, (size_t)set->n_places, sizeof *set->natural);
-    wb_harness_weight(run->harness, weight);
-    set->weight = wb_vec3_length(weight);
     wb_harness_evaluate(run->harness, 0.0, &balance);
-    take_places(run, set->natural);
-    set->converged = true;
-    for (int i = 0; i < run->plan->n_steps && set->converged; i++) {
-        struct wb_harness_result result;
-        begin_step(run, i);
-        compute_step(run, &run->plan->steps[i], &result);
-        take_step(run, &result);
-        set->n_steps = i + 1;
-        set->converged = result.end == WB_HARNESS_CONVERGED;
-    }
+    run->before = wb_memory_new(wb_harness_run_state_size(run), 1);
     return WB_OK;
+}
+
+enum wb_status wb_harness_run_create(struct wb_harness_run **out,
+                                     const struct wb_harness_plan *plan,
+                                     const struct wb_harness_settings *settings)
+{
+    struct wb_harness_run *const run = wb_memory_new(1, sizeof *run);
+    run->plan = plan;
+    run->settings = *settings;
+    const enum wb_status status = create(run);
+    if (status == WB_OK)
+        *out = run;
+    else
+        wb_harness_run_destroy(run);
+    return status;
+}
+
+void wb_harness_run_destroy(struct wb_harness_run *run)
+{
+    if (!run)
+        return;
+    wb_harness_solver_destroy(run->solver);
+    wb_harness_destroy(run->harness);
+    for (int i = 0; i < run->plan->n_wires; i++)
+        wb_law_section_destroy(run->sections[i]);
+    free(run->before);
+    free(run);
+}
+
+/* --- all steps of the file --- */
+
+struct watched {
+    int step;
+    bool (*progress)(void *context, int step, double fraction);
+    void *context;
+};
+
+static bool watch_step(void *context, double fraction)
+{
+    const struct watched *const watched = context;
+    return !watched->progress || watched->progress(watched->context, watched->step, fraction);
+}
+
+static void compute(struct wb_harness_result_set *set, struct wb_harness_run *run,
+                    struct watched *watched)
+{
+    const struct wb_harness_plan *const plan = set->plan;
+    struct wb_harness_step_result natural;
+    double weight[6];
+    wb_harness_run_take_memory(run, set->memory, &natural);
+    wb_harness_run_begin(run, &natural);
+    wb_harness_weight(run->harness, weight);
+    set->n_elements = wb_harness_n_points(run->harness) / 2;
+    set->n_places = run->n_places;
+    set->weight = wb_vec3_length(weight);
+    set->natural = natural.places;
+    set->results = wb_memory_take(set->memory, (size_t)plan->n_steps, sizeof *set->results);
+    set->converged = true;
+    for (int i = 0; i < plan->n_steps && set->converged; i++) {
+        struct wb_harness_step_result *const result = &set->results[i];
+        watched->step = i;
+        wb_harness_run_take_memory(run, set->memory, result);
+        wb_harness_run_step(run, &plan->steps[i], watch_step, watched, result);
+        set->n_steps = i + 1;
+        set->converged = result->end == WB_HARNESS_CONVERGED;
+    }
 }
 
 static bool has_default_torsion(const struct wb_harness_plan *plan)
@@ -404,20 +524,14 @@ static enum wb_status compute_once(struct wb_harness_result_set *set,
                                    bool (*progress)(void *context, int step, double fraction),
                                    void *context)
 {
-    struct run *const run = wb_memory_new(1, sizeof *run);
+    struct wb_harness_run *run;
+    struct watched watched = {.progress = progress, .context = context};
     *set = (struct wb_harness_result_set){.plan = plan, .settings = *settings};
     set->memory = wb_memory_new(1, sizeof *set->memory);
-    run->set = set;
-    run->plan = plan;
-    run->progress = progress;
-    run->context = context;
-    const enum wb_status status = compute(run);
-    wb_harness_solver_destroy(run->solver);
-    wb_harness_destroy(run->harness);
-    for (int i = 0; i < plan->n_wires; i++)
-        wb_law_section_destroy(run->sections[i]);
-    free(run);
-    return status;
+    WB_TRY(wb_harness_run_create(&run, plan, settings));
+    compute(set, run, &watched);
+    wb_harness_run_destroy(run);
+    return WB_OK;
 }
 
 enum wb_status wb_harness_run_compute(struct wb_harness_result_set *set,

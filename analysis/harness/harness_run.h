@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "analysis/harness/harness_file.h"
+#include "base/memory.h"
 #include "base/status.h"
 #include "fe/harness/harness_solver.h"
 
@@ -76,6 +77,37 @@ struct wb_harness_result_set {
     struct wb_harness_step_result *results; /* (n_steps of the plan) */
     struct wb_memory *memory;
 };
+
+/* A harness whose steps are computed one after another, at first in its stress-free shape. */
+struct wb_harness_run; /* opaque */
+
+/* The plan is borrowed. On failure *out is unchanged. */
+WB_MUST_CHECK enum wb_status wb_harness_run_create(struct wb_harness_run **out,
+                                                   const struct wb_harness_plan *plan,
+                                                   const struct wb_harness_settings *settings);
+void wb_harness_run_destroy(struct wb_harness_run *run); /* accepts NULL */
+
+/* Takes the arrays of a result; the length of `places`. */
+void wb_harness_run_take_memory(const struct wb_harness_run *run, struct wb_memory *memory,
+                                struct wb_harness_step_result *result);
+int wb_harness_run_n_places(const struct wb_harness_run *run);
+
+/* Computes a step, which must be possible (wb_harness_file_check_step()), into a result with its
+ * arrays. Without an equilibrium the state is that of the last one: on the way of a move, before a
+ * release. `watch` may be NULL; it returns false to stop. */
+void wb_harness_run_step(struct wb_harness_run *run, const struct wb_harness_step *step,
+                         bool (*watch)(void *context, double fraction), void *context,
+                         struct wb_harness_step_result *result);
+/* The result before the first step. */
+void wb_harness_run_begin(struct wb_harness_run *run, struct wb_harness_step_result *result);
+
+/* Where an item is, with the rotation of the section there. */
+struct wb_rod_node wb_harness_run_item(const struct wb_harness_run *run, int item);
+
+/* Copies the whole state to memory of wb_harness_run_state_size() bytes and back, bit for bit. */
+size_t wb_harness_run_state_size(const struct wb_harness_run *run);
+void wb_harness_run_save(const struct wb_harness_run *run, void *state);
+void wb_harness_run_restore(struct wb_harness_run *run, const void *state);
 
 /* Computes all steps, or up to one that finds no equilibrium, which is a result. `progress` may be
  * NULL; it returns false to stop. */

@@ -1,6 +1,7 @@
 #include "analysis/harness/harness_output_private.h"
 
 #include "base/units.h"
+#include "base/vec3.h"
 #include "tests/analysis/harness/harness_text.h"
 #include "tests/messages.h"
 #include "tests/own_folder.h"
@@ -213,6 +214,91 @@ static void stops_when_asked(void **unused)
     release(&set, plan);
 }
 
+static void check_result(const struct wb_harness_result_set *set, int step,
+                         const struct wb_harness_step_result *r)
+{
+    const struct wb_harness_step_result *const expected = &set->results[step];
+    const size_t n_places = (size_t)set->n_places, n_items = (size_t)set->plan->n_items;
+    const size_t n_branches = (size_t)set->plan->n_branches;
+    assert_memory_equal(r->places, expected->places, n_places * sizeof *r->places);
+    assert_memory_equal(r->branches, expected->branches, n_branches * sizeof *r->branches);
+    for (size_t i = 0; i < n_items; i++) {
+        struct wb_harness_force without_soft = expected->forces[i];
+        without_soft.soft_force = r->forces[i].soft_force;
+        assert_memory_equal(&r->forces[i], &without_soft, sizeof without_soft);
+    }
+    assert_true(r->plastic == expected->plastic && r->elastic == expected->elastic);
+    assert_int_equal(r->iterations, expected->iterations);
+}
+
+/* Each step is undone once by restoring the state before it. */
+static void steps_that_are_undone_and_repeated_are_the_same_bit_for_bit(void **unused)
+{
+    (void)unused;
+    struct wb_harness_result_set set;
+    struct wb_harness_plan *const plan = compute(&set, 0, NULL, &yielding);
+    struct wb_harness_run *run;
+    struct wb_harness_step_result result;
+    struct wb_memory memory = {0};
+    assert_int_equal(wb_harness_run_create(&run, plan, &yielding), WB_OK);
+    void *const state = calloc(1, wb_harness_run_state_size(run));
+    assert_non_null(state);
+    assert_int_equal(wb_harness_run_n_places(run), set.n_places);
+    wb_harness_run_take_memory(run, &memory, &result);
+    wb_harness_run_begin(run, &result);
+    assert_memory_equal(result.places, set.natural, (size_t)set.n_places * sizeof *set.natural);
+    for (int i = 0; i < plan->n_steps; i++) {
+        wb_harness_run_save(run, state);
+        for (int k = 0; k < 2; k++) {
+            wb_harness_run_step(run, &plan->steps[i], NULL, NULL, &result);
+            check_result(&set, i, &result);
+            if (k == 0)
+                wb_harness_run_restore(run, state);
+        }
+    }
+    free(state);
+    wb_harness_run_destroy(run);
+    wb_memory_release(&memory);
+    release(&set, plan);
+}
+
+static bool stop_at_once(void *context, double fraction)
+{
+    (void)context, (void)fraction;
+    return false;
+}
+
+/* The clip holds it as before, and the release can be repeated. */
+static void release_that_does_not_end_leaves_the_state_before(void **unused)
+{
+    (void)unused;
+    enum {
+        RELEASE = 3
+    };
+    struct wb_harness_result_set set;
+    struct wb_harness_plan *const plan = compute(&set, 0, NULL, &yielding);
+    struct wb_harness_run *run;
+    struct wb_harness_step_result result;
+    struct wb_memory memory = {0};
+    assert_int_equal(wb_harness_run_create(&run, plan, &yielding), WB_OK);
+    wb_harness_run_take_memory(run, &memory, &result);
+    for (int i = 0; i < RELEASE; i++)
+        wb_harness_run_step(run, &plan->steps[i], NULL, NULL, &result);
+    wb_harness_run_step(run, &plan->steps[RELEASE], stop_at_once, NULL, &result);
+    assert_int_equal(result.end, WB_HARNESS_STOPPED);
+    assert_true(result.forces[3].is_mounted);
+    assert_true(result.forces[3].size == set.results[RELEASE - 1].forces[3].size);
+    assert_memory_equal(result.places, set.results[RELEASE - 1].places,
+                        (size_t)set.n_places * sizeof *result.places);
+    const struct wb_rod_node clip = wb_harness_run_item(run, 3);
+    assert_true(wb_vec3_distance(clip.position, plan->steps[RELEASE - 1].position) < 1e-10);
+    wb_harness_run_step(run, &plan->steps[RELEASE], NULL, NULL, &result);
+    check_result(&set, RELEASE, &result);
+    wb_harness_run_destroy(run);
+    wb_memory_release(&memory);
+    release(&set, plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -224,6 +310,8 @@ int main(void)
         cmocka_unit_test(limits_are_watched),
         cmocka_unit_test(natural_shape_is_free_of_force),
         cmocka_unit_test(stops_when_asked),
+        cmocka_unit_test(steps_that_are_undone_and_repeated_are_the_same_bit_for_bit),
+        cmocka_unit_test(release_that_does_not_end_leaves_the_state_before),
     };
     return cmocka_run_group_tests(tests, begin, remove_folder);
 }
