@@ -16,14 +16,14 @@
 
 static const char *const holds[] = {"point", "axis", "all", NULL};
 static const char *const steps[] = {"hang", "mount", "move", "release", "take_off", NULL};
+static const char parallel[] = "it is parallel to `up`, which must point across";
+
 /* State while a file is read. */
 struct reader {
     struct wb_harness_plan *plan;
     struct wb_model_file file;
     char root[WB_HARNESS_NAME];
-    bool is_mounted[WB_HARNESS_MOST_ITEMS];
-    double place[WB_HARNESS_MOST_ITEMS][3]; /* m, of what is mounted */
-    bool hangs, ended;
+    struct wb_harness_assembly assembly;
 };
 
 /* --- values --- */
@@ -48,15 +48,11 @@ static enum wb_status read_direction(const struct wb_config_node *map, const cha
     return WB_OK;
 }
 
-static enum wb_status check_up(const struct wb_config_node *map, const double direction[3],
-                               const double up[3])
+static bool is_parallel(const double direction[3], const double up[3])
 {
     double across[3];
     wb_vec3_cross(direction, up, across);
-    if (wb_vec3_length(across) < 1e-3)
-        return wb_config_refuse(map, "direction",
-                                "it is parallel to `up`, which must point across");
-    return WB_OK;
+    return wb_vec3_length(across) < 1e-3;
 }
 
 /* The unit quaternion of a rotation matrix (Shepperd 1978). */
@@ -324,7 +320,7 @@ static enum wb_status sort_branches(struct reader *reader, const struct wb_confi
 
 /* --- items --- */
 
-static int find_item(const struct wb_harness_plan *plan, const char *name)
+int wb_harness_file_find_item(const struct wb_harness_plan *plan, const char *name)
 {
     for (int i = 0; i < plan->n_items; i++) {
         if (strcmp(plan->items[i].name, name) == 0)
@@ -338,7 +334,7 @@ static enum wb_status add_item(struct reader *reader, const struct wb_config_nod
 {
     struct wb_harness_plan *const plan = reader->plan;
     WB_TRY(check_name(map, item->name));
-    if (find_item(plan, item->name) >= 0)
+    if (wb_harness_file_find_item(plan, item->name) >= 0)
         return wb_config_refuse(map, "name",
                                 "%s is the name of the root, a connector or a clip "
                                 "already",
@@ -432,35 +428,120 @@ static double wire_between(const struct wb_harness_plan *plan, const struct wb_h
     return way_to_root(plan, a->branch, a->at) + way_to_root(plan, b->branch, b->at) - 2.0 * common;
 }
 
-static enum wb_status check_reach(const struct reader *reader, const struct wb_config_node *map,
-                                  const struct wb_harness_step *step)
+static enum wb_status check_reach(const struct wb_harness_plan *plan,
+                                  const struct wb_harness_assembly *assembly,
+                                  const struct wb_harness_step *step, struct wb_reason *why)
 {
-    const struct wb_harness_plan *const plan = reader->plan;
     for (int i = 0; i < plan->n_items; i++) {
-        if (!reader->is_mounted[i] || i == step->item)
+        if (!assembly->is_mounted[i] || i == step->item)
             continue;
         const double wire = wire_between(plan, &plan->items[step->item], &plan->items[i]);
-        const double apart = wb_vec3_distance(step->position, reader->place[i]);
+        const double apart = wb_vec3_distance(step->position, assembly->place[i]);
         if (apart > wire * (1.0 + 1e-9))
-            return wb_config_refuse(map, "at_mm", "%s to %s: %.4g mm apart, %.4g mm of wire",
-                                    plan->items[step->item].name, plan->items[i].name,
-                                    apart / WB_MM, wire / WB_MM);
+            return wb_fail_to(why, WB_ERR_ARGUMENT, "%s to %s: %.4g mm apart, %.4g mm of wire",
+                              plan->items[step->item].name, plan->items[i].name, apart / WB_MM,
+                              wire / WB_MM);
     }
     return WB_OK;
 }
 
-static enum wb_status read_target(struct reader *reader, const struct wb_config_node *map,
+static enum wb_status check_target(const struct wb_harness_plan *plan,
+                                   const struct wb_harness_assembly *assembly,
+                                   const struct wb_harness_step *step, const char **key,
+                                   struct wb_reason *why)
+{
+    const struct wb_harness_item *const item = &plan->items[step->item];
+    *key = "direction";
+    if (step->has_direction && item->hold == WB_HARNESS_POINT)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "%s holds a point only", item->name);
+    if (step->has_direction && step->has_up && is_parallel(step->direction, step->up))
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "%s", parallel);
+    *key = "up";
+    if (step->has_up && item->hold != WB_HARNESS_FIXED)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "%s lets the wire turn about its axis", item->name);
+    if (step->has_up && !step->has_direction)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "expected a `direction` beside it");
+    *key = "at_mm";
+    return check_reach(plan, assembly, step, why);
+}
+
+/* Whether a release leaves a hold. */
+static bool holds_another(const struct wb_harness_plan *plan,
+                          const struct wb_harness_assembly *assembly, int item)
+{
+    for (int i = 0; i < plan->n_items; i++) {
+        if (assembly->is_mounted[i] && i != item)
+            return true;
+    }
+    return false;
+}
+
+enum wb_status wb_harness_file_check_step(const struct wb_harness_plan *plan,
+                                          const struct wb_harness_assembly *assembly,
+                                          const struct wb_harness_step *step, const char **key,
+                                          struct wb_reason *why)
+{
+    const char *const name = plan->items[step->item].name;
+    const bool mounted = assembly->is_mounted[step->item];
+    *key = NULL;
+    if (assembly->is_off)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "`take_off` is the last step");
+    if (step->kind == WB_HARNESS_HANG && assembly->hangs)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "the harness hangs already");
+    if (step->kind == WB_HARNESS_HANG || step->kind == WB_HARNESS_TAKE_OFF)
+        return WB_OK;
+    *key = steps[step->kind];
+    if (step->kind == WB_HARNESS_MOUNT && mounted)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "%s is mounted already; `move` moves it", name);
+    if (step->kind != WB_HARNESS_MOUNT && !mounted)
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "%s is not mounted", name);
+    if (step->kind != WB_HARNESS_RELEASE)
+        return check_target(plan, assembly, step, key, why);
+    if (!holds_another(plan, assembly, step->item))
+        return wb_fail_to(why, WB_ERR_ARGUMENT,
+                          "nothing would be held; `take_off` takes the harness off");
+    return WB_OK;
+}
+
+void wb_harness_file_begin(const struct wb_harness_plan *plan, struct wb_harness_assembly *assembly)
+{
+    *assembly = (struct wb_harness_assembly){.is_mounted = {true}};
+    memcpy(assembly->place[0], plan->root.position, sizeof assembly->place[0]);
+}
+
+void wb_harness_file_apply_step(const struct wb_harness_step *step,
+                                struct wb_harness_assembly *assembly)
+{
+    switch (step->kind) {
+    case WB_HARNESS_HANG:
+        assembly->hangs = true;
+        break;
+    case WB_HARNESS_TAKE_OFF:
+        assembly->is_off = true;
+        break;
+    case WB_HARNESS_RELEASE:
+        assembly->is_mounted[step->item] = false;
+        break;
+    case WB_HARNESS_MOUNT:
+    case WB_HARNESS_MOVE:
+        memcpy(assembly->place[step->item], step->position, sizeof step->position);
+        assembly->is_mounted[step->item] = true;
+        break;
+    }
+}
+
+static enum wb_status read_target(const struct wb_config_node *map, const char *beside,
                                   struct wb_harness_step *step)
 {
-    const struct wb_harness_item *const item = &reader->plan->items[step->item];
     const struct wb_config_node *at = NULL, *direction = NULL, *up = NULL;
     const struct wb_config_key keys[] = {
         WB_CONFIG_IGNORED(steps[step->kind]),
         WB_CONFIG_NODE("at_mm", &at),
         WB_CONFIG_OPTIONAL_NODE("direction", &direction),
         WB_CONFIG_OPTIONAL_NODE("up", &up),
+        WB_CONFIG_IGNORED(beside),
     };
-    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys) - !beside));
     WB_TRY(read_vector(map, "at_mm", at, WB_MM, 1e6, step->position));
     step->has_direction = direction;
     step->has_up = up;
@@ -468,37 +549,11 @@ static enum wb_status read_target(struct reader *reader, const struct wb_config_
         WB_TRY(read_direction(map, "direction", direction, step->direction));
     if (up)
         WB_TRY(read_direction(map, "up", up, step->up));
-    if (direction && item->hold == WB_HARNESS_POINT)
-        return wb_config_refuse(map, "direction", "%s holds a point only", item->name);
-    if (up && item->hold != WB_HARNESS_FIXED)
-        return wb_config_refuse(map, "up", "%s lets the wire turn about its axis", item->name);
-    if (up && !direction)
-        return wb_config_refuse(map, "up", "expected a `direction` beside it");
-    if (up)
-        WB_TRY(check_up(map, step->direction, step->up));
-    return check_reach(reader, map, step);
-}
-
-static enum wb_status find_step_item(const struct reader *reader, const struct wb_config_node *map,
-                                     struct wb_harness_step *step)
-{
-    const struct wb_harness_plan *const plan = reader->plan;
-    const char *const key = steps[step->kind];
-    const char *const name = wb_config_scalar(wb_config_find(map, key));
-    step->item = name ? find_item(plan, name) : -1;
-    if (step->item < 0)
-        return wb_config_refuse(map, key, "no connector, clip or root is named '%s'",
-                                name ? name : "");
-    const bool mounted = reader->is_mounted[step->item];
-    if (step->kind == WB_HARNESS_MOUNT && mounted)
-        return wb_config_refuse(map, key, "%s is mounted already; `move` moves it", name);
-    if (step->kind != WB_HARNESS_MOUNT && !mounted)
-        return wb_config_refuse(map, key, "%s is not mounted", name);
-    snprintf(step->name, sizeof step->name, "%s %s", key, name);
     return WB_OK;
 }
 
-static enum wb_status read_action(struct reader *reader, const struct wb_config_node *map,
+static enum wb_status read_action(const struct wb_harness_plan *plan,
+                                  const struct wb_config_node *map, const char *beside,
                                   struct wb_harness_step *step)
 {
     int found = -1;
@@ -509,23 +564,36 @@ static enum wb_status read_action(struct reader *reader, const struct wb_config_
                                 "expected `hang`, `take_off`, or a map with one of "
                                 "`mount`, `move` and `release`");
     step->kind = (enum wb_harness_step_kind)found;
-    WB_TRY(find_step_item(reader, map, step));
-    if (step->kind != WB_HARNESS_RELEASE) {
-        WB_TRY(read_target(reader, map, step));
-        memcpy(reader->place[step->item], step->position, sizeof step->position);
-        reader->is_mounted[step->item] = true;
-        return WB_OK;
-    }
-    const struct wb_config_key keys[] = {WB_CONFIG_IGNORED("release")};
-    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
-    reader->is_mounted[step->item] = false;
-    for (int i = 0; i < reader->plan->n_items; i++) {
-        if (reader->is_mounted[i])
-            return WB_OK;
-    }
-    return wb_config_refuse(map, "release",
-                            "nothing would be held; `take_off` takes the harness "
-                            "off");
+    const char *const key = steps[step->kind];
+    const char *const name = wb_config_scalar(wb_config_find(map, key));
+    step->item = name ? wb_harness_file_find_item(plan, name) : -1;
+    if (step->item < 0)
+        return wb_config_refuse(map, key, "no connector, clip or root is named '%s'",
+                                name ? name : "");
+    snprintf(step->name, sizeof step->name, "%s %s", key, name);
+    if (step->kind != WB_HARNESS_RELEASE)
+        return read_target(map, beside, step);
+    const struct wb_config_key keys[] = {WB_CONFIG_IGNORED(key), WB_CONFIG_IGNORED(beside)};
+    return wb_config_map(map, keys, WB_COUNT(keys) - !beside);
+}
+
+enum wb_status wb_harness_file_parse_step(const struct wb_harness_plan *plan,
+                                          const struct wb_config_node *node, const char *beside,
+                                          struct wb_harness_step *step)
+{
+    const char *const word = wb_config_scalar(node);
+    *step = (struct wb_harness_step){.kind = WB_HARNESS_HANG};
+    if (!word)
+        return read_action(plan, node, beside, step);
+    if (strcmp(word, steps[WB_HARNESS_TAKE_OFF]) == 0)
+        step->kind = WB_HARNESS_TAKE_OFF;
+    else if (strcmp(word, steps[WB_HARNESS_HANG]) != 0)
+        return wb_config_refuse(node, NULL,
+                                "'%s': expected hang, take_off, or a map with one of "
+                                "mount, move and release",
+                                word);
+    snprintf(step->name, sizeof step->name, "%s", word);
+    return WB_OK;
 }
 
 static enum wb_status read_step(void *context, const struct wb_config_node *node)
@@ -533,27 +601,12 @@ static enum wb_status read_step(void *context, const struct wb_config_node *node
     struct reader *const reader = context;
     struct wb_harness_plan *const plan = reader->plan;
     struct wb_harness_step *const step = &plan->steps[plan->n_steps];
-    const char *const word = wb_config_scalar(node);
-    if (reader->ended)
-        return wb_config_refuse(node, NULL, "`take_off` is the last step");
-    if (!word) {
-        WB_TRY(read_action(reader, node, step));
-    } else if (strcmp(word, steps[WB_HARNESS_HANG]) == 0) {
-        if (reader->hangs)
-            return wb_config_refuse(node, NULL, "the harness hangs already");
-        step->kind = WB_HARNESS_HANG;
-        reader->hangs = true;
-    } else if (strcmp(word, steps[WB_HARNESS_TAKE_OFF]) == 0) {
-        step->kind = WB_HARNESS_TAKE_OFF;
-        reader->ended = true;
-    } else {
-        return wb_config_refuse(node, NULL,
-                                "'%s': expected hang, take_off, or a map with one of "
-                                "mount, move and release",
-                                word);
-    }
-    if (word)
-        snprintf(step->name, sizeof step->name, "%s", word);
+    struct wb_reason why = {""};
+    const char *key;
+    WB_TRY(wb_harness_file_parse_step(plan, node, NULL, step));
+    if (wb_harness_file_check_step(plan, &reader->assembly, step, &key, &why) != WB_OK)
+        return wb_config_refuse(node, key, "%s", why.text);
+    wb_harness_file_apply_step(step, &reader->assembly);
     plan->n_steps++;
     return WB_OK;
 }
@@ -581,11 +634,11 @@ static enum wb_status read_root(struct reader *reader, const struct wb_config_no
         WB_TRY(read_direction(map, "direction", direction_node, direction));
     if (up_node)
         WB_TRY(read_direction(map, "up", up_node, up));
-    WB_TRY(check_up(map, direction, up));
+    if (is_parallel(direction, up))
+        return wb_config_refuse(map, "direction", "%s", parallel);
     wb_harness_file_rotation(direction, up, NULL, plan->root.rotation);
     snprintf(reader->root, sizeof reader->root, "%s", item.name);
-    memcpy(reader->place[0], plan->root.position, sizeof plan->root.position);
-    reader->is_mounted[0] = true;
+    wb_harness_file_begin(plan, &reader->assembly);
     return add_item(reader, map, &item);
 }
 

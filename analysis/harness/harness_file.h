@@ -34,6 +34,7 @@
 
 #include <stdbool.h>
 
+#include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/status.h"
@@ -124,6 +125,36 @@ struct wb_harness_plan {
 /* Reads a file and the files of its wires. Errors name file, line and key. The plan is large:
  * allocate it. */
 WB_MUST_CHECK enum wb_status wb_harness_file_read(struct wb_harness_plan *plan, const char *path);
+
+/* What a step begins with: what is mounted, and where. */
+struct wb_harness_assembly {
+    bool hangs, is_off;
+    bool is_mounted[WB_HARNESS_MOST_ITEMS];
+    double place[WB_HARNESS_MOST_ITEMS][3]; /* m, of what is mounted */
+};
+
+/* Reads a step from its node, which may be a line of JSON. `beside`: a further key, which is not
+ * read; NULL: none. */
+WB_MUST_CHECK enum wb_status wb_harness_file_parse_step(const struct wb_harness_plan *plan,
+                                                        const struct wb_config_node *node,
+                                                        const char *beside,
+                                                        struct wb_harness_step *step);
+
+/* Whether a step is possible; otherwise `why` says why not and *key names the key of a file (NULL:
+ * the step). */
+WB_MUST_CHECK enum wb_status wb_harness_file_check_step(const struct wb_harness_plan *plan,
+                                                        const struct wb_harness_assembly *assembly,
+                                                        const struct wb_harness_step *step,
+                                                        const char **key, struct wb_reason *why);
+
+/* The assembly before the first step, and after a step. */
+void wb_harness_file_begin(const struct wb_harness_plan *plan,
+                           struct wb_harness_assembly *assembly);
+void wb_harness_file_apply_step(const struct wb_harness_step *step,
+                                struct wb_harness_assembly *assembly);
+
+/* Index of an item; -1: no such name. */
+int wb_harness_file_find_item(const struct wb_harness_plan *plan, const char *name);
 
 /* The rotation of a section with an axis and, where `up` is not NULL, that direction upwards; else
  * the shortest turn of `before`. */
