@@ -119,6 +119,10 @@ void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_j
 
 /* --- text --- */
 
+enum {
+    ONE_LINE = -1 /* as a depth */
+};
+
 static void format_value(struct wb_text *text, json_t *value, int depth);
 
 static void format_key(struct wb_text *text, const char *key)
@@ -129,22 +133,30 @@ static void format_key(struct wb_text *text, const char *key)
     json_decref(string);
 }
 
+static void break_line(struct wb_text *text, int depth)
+{
+    if (depth != ONE_LINE)
+        wb_text_append(text, "\n%*s", 2 * depth, "");
+}
+
 static void format_list(struct wb_text *text, json_t *list, int depth)
 {
+    const int inside = depth == ONE_LINE ? ONE_LINE : depth + 1;
     const bool is_object = json_is_object(list);
     void *member = json_object_iter(list);
     const size_t n = is_object ? json_object_size(list) : json_array_size(list);
     wb_text_append(text, is_object ? "{" : "[");
     for (size_t i = 0; i < n; i++) {
-        wb_text_append(text, "%s\n%*s", i == 0 ? "" : ",", 2 * (depth + 1), "");
+        wb_text_append(text, i > 0 && inside == ONE_LINE ? ", " : i > 0 ? "," : "");
+        break_line(text, inside);
         if (is_object)
             format_key(text, json_object_iter_key(member));
         format_value(text, is_object ? json_object_iter_value(member) : json_array_get(list, i),
-                     depth + 1);
+                     inside);
         member = json_object_iter_next(list, member);
     }
     if (n > 0)
-        wb_text_append(text, "\n%*s", 2 * depth, "");
+        break_line(text, depth);
     wb_text_append(text, is_object ? "}" : "]");
 }
 
@@ -164,12 +176,22 @@ static void format_value(struct wb_text *text, json_t *value, int depth)
     }
 }
 
-char *wb_json_format(const struct wb_json *root)
+static char *format(const struct wb_json *root, int depth)
 {
     struct wb_text text = {0};
-    format_value(&text, jansson(root), 0);
+    format_value(&text, jansson(root), depth);
     wb_text_append(&text, "\n");
     return text.bytes;
+}
+
+char *wb_json_format(const struct wb_json *root)
+{
+    return format(root, 0);
+}
+
+char *wb_json_format_line(const struct wb_json *root)
+{
+    return format(root, ONE_LINE);
 }
 
 enum wb_status wb_json_parse_with_reason(struct wb_json **root, const char *text,

@@ -31,7 +31,8 @@ static const struct argp_option option_table[] = {
     {"mesh", KEY_MESH, "NAME", 0, "Draw the lines of this mesh (that of the run)"},
     {"force", WB_KEY_FORCE, NULL, 0, "Overwrite the figure"},
     {"schema", KEY_SCHEMA, "KIND", 0,
-     "Print the JSON Schema of a kind of file: dataset, report, manifest, properties or harness"},
+     "Print the JSON Schema of a kind of file: dataset, report, manifest, properties, harness or "
+     "harness-answer"},
     {"json", WB_KEY_JSON, NULL, 0, "Print one JSON object"},
     {0},
 };
@@ -69,10 +70,10 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_SCHEMA:
         options->schema = wb_schema_find(argument);
         if (!options->schema)
-            argp_error(
-                state,
-                "--schema: expected dataset, report, manifest, properties or harness, not '%s'",
-                argument);
+            argp_error(state,
+                       "--schema: expected dataset, report, manifest, properties, harness or "
+                       "harness-answer, not '%s'",
+                       argument);
         return 0;
     case ARGP_KEY_END:
         if (options->schema && options->common.input)

@@ -128,8 +128,11 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         take_argument(state, argument, &o->settings);
         return 0;
     }
-    if (key == ARGP_KEY_END)
+    if (key == ARGP_KEY_END) {
         check(state, &o->settings);
+        if (o->settings.follow && (o->common.output || o->settings.vtk || o->common.json))
+            argp_error(state, "--follow writes no files: -o, --vtk and --json do not apply");
+    }
     return wb_command_parse_common(key, argument, state);
 }
 

@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "cli/file_kind.h"
 #include "cli/finding.h"
+#include "cli/solve_harness_follow.h"
 
 #define WB_LOG_DOMAIN "solve"
 
@@ -141,6 +142,8 @@ static enum wb_status compute(const struct wb_command_common *common,
         WB_TRY(wb_finding_check_figure(figure, common->force));
     if (!s.is_elastic)
         warn_of_unloading(plan);
+    if (settings->follow)
+        return wb_solve_harness_follow(plan, &s);
     wb_progress_start(&watched.progress, "solve", "steps", plan->n_steps);
     const enum wb_status status = wb_harness_run_compute(set, plan, &s, watch, &watched);
     wb_progress_finish(&watched.progress);
@@ -157,7 +160,9 @@ int wb_solve_harness(const struct wb_command_common *common,
         wb_finding_folder_figure_path(figure, common->output);
     enum wb_status status = compute(common, settings, figure, plan, &set);
     bool complete = true;
-    if (status == WB_OK) {
+    if (status == WB_OK && settings->follow) {
+        complete = !wb_interrupted();
+    } else if (status == WB_OK) {
         complete = set.converged;
         status = deliver(common, settings, figure, &set);
     }

@@ -15,9 +15,9 @@ INTRODUCTION = """\
 
 [File formats](file-formats.md) explains these files; this page lists every key. It is generated from the tables of keys
 in `analysis/`, as are the JSON Schemas (draft 2020-12) in `share/wirebench/schemas/`, which
-`wirebench info --schema dataset`, `report`, `manifest`, `properties` or `harness` prints, too. The schemas reject unknown keys. A
-program that is to read files of later versions should ignore unknown keys instead, because later versions add keys
-([versions](versions.md#what-a-version-number-promises)).
+`wirebench info --schema dataset`, `report`, `manifest`, `properties`, `harness` or `harness-answer` prints, too. The
+schemas reject unknown keys. A program that is to read files of later versions should ignore unknown keys instead,
+because later versions add keys ([versions](versions.md#what-a-version-number-promises)).
 
 Keys that are not optional are always present. `null` stands for a number that is not known. In a path such as
 `at[].low`, `[]` stands for the items of a list. A unit in the third column is that of the value; without one the value

@@ -104,7 +104,8 @@ static const struct wb_key step_rows[] = {
     {"forces", OBJECT | LIST, "forces on the mounted items", &force_keys},
     {"branches", OBJECT | LIST, "branches", &branch_keys},
 };
-static WB_KEYS(step, "harness_step", "A step of the assembly.");
+const struct wb_keys wb_harness_output_step_keys = {"harness_step", "A step of the assembly.",
+                                                    step_rows, WB_COUNT(step_rows)};
 
 static const struct wb_key residual_rows[] = {
     {"distance_mm", NUMBER, "largest distance from the stress-free shape before"},
@@ -123,7 +124,7 @@ static const struct wb_key wb_harness_output_rows[] = {
     {"weight_N", NUMBER, "weight of branches and connectors"},
     {"converged", FLAG, "all steps were computed"},
     {"wires", WB_POINTER(struct wb_harness_plan, wires, n_wires), "wires", &wire_keys},
-    {"steps", OBJECT | LIST, "steps", &step_keys},
+    {"steps", OBJECT | LIST, "steps", &wb_harness_output_step_keys},
     {"residual_shape", OBJECT | OPTIONAL, "shape after the harness was taken off", &residual_keys},
 };
 WB_KEYS(wb_harness_output, "harness", "`wirebench solve harness`.");
@@ -150,7 +151,7 @@ static void put_wires(struct wb_json *object, const struct wb_harness_result_set
     }
 }
 
-static void put_snaps(struct wb_json *object, const struct wb_harness_result_set *set,
+static void put_snaps(struct wb_json *object, const struct wb_harness_plan *plan,
                       const struct wb_harness_step_result *step)
 {
     struct wb_json *const list = wb_json_set_array(object, "snaps");
@@ -158,26 +159,24 @@ static void put_snaps(struct wb_json *object, const struct wb_harness_result_set
         const struct wb_harness_snap *const snap = &step->snaps[i];
         struct wb_json *const item = wb_json_append_object(list);
         WB_PUT(item, &snap_keys, struct wb_harness_snap, snap);
-        wb_json_set_text(item, "branch", branch_name(set->plan, step->snap_branch[i]));
+        wb_json_set_text(item, "branch", branch_name(plan, step->snap_branch[i]));
         wb_json_set_number(item, "at_mm", step->snap_at[i] / WB_MM);
         WB_PUT(item, &snap_keys, struct wb_harness_snap, snap);
     }
 }
 
-static void put_step(struct wb_json *list, const struct wb_harness_result_set *set, int index)
+void wb_harness_output_put_step(struct wb_json *object, const struct wb_harness_plan *plan,
+                                const char *name, const struct wb_harness_step_result *step)
 {
-    const struct wb_harness_plan *const plan = set->plan;
-    const struct wb_harness_step_result *const step = &set->results[index];
-    struct wb_json *const object = wb_json_append_object(list);
-    wb_json_set_text(object, "name", plan->steps[index].name);
+    wb_json_set_text(object, "name", name);
     wb_json_set_boolean(object, "converged", step->end == WB_HARNESS_CONVERGED);
-    WB_PUT(object, &step_keys, struct wb_harness_step_result, step);
+    WB_PUT(object, &wb_harness_output_step_keys, struct wb_harness_step_result, step);
     if (step->problem)
         wb_json_set_text(object, "problem", step->problem);
     if (step->worst_branch >= 0)
         wb_json_set_text(object, "branch", branch_name(plan, step->worst_branch));
-    WB_PUT(object, &step_keys, struct wb_harness_step_result, step);
-    put_snaps(object, set, step);
+    WB_PUT(object, &wb_harness_output_step_keys, struct wb_harness_step_result, step);
+    put_snaps(object, plan, step);
     struct wb_json *const forces = wb_json_set_array(object, "forces");
     for (int i = 0; i < plan->n_items; i++) {
         const struct wb_harness_force *const force = &step->forces[i];
@@ -218,7 +217,8 @@ void wb_harness_output_put(struct wb_json *object, const struct wb_harness_resul
     put_wires(object, set);
     struct wb_json *const steps = wb_json_set_array(object, "steps");
     for (int i = 0; i < set->n_steps; i++)
-        put_step(steps, set, i);
+        wb_harness_output_put_step(wb_json_append_object(steps), plan, plan->steps[i].name,
+                                   &set->results[i]);
     const int last = taken_off(set);
     if (last >= 0) {
         int branch;

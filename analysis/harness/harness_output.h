@@ -9,10 +9,14 @@
 #include "base/status.h"
 #include "base/text.h"
 
-extern const struct wb_keys wb_harness_output_keys;
+extern const struct wb_keys wb_harness_output_keys, wb_harness_output_step_keys;
 
 /* Members of harness.json into an object. */
 void wb_harness_output_put(struct wb_json *object, const struct wb_harness_result_set *set);
+
+/* The same of one step: a member of its `steps`. */
+void wb_harness_output_put_step(struct wb_json *object, const struct wb_harness_plan *plan,
+                                const char *name, const struct wb_harness_step_result *step);
 
 /* Writes the files into a folder, which exists. */
 WB_MUST_CHECK enum wb_status wb_harness_output_write(const struct wb_harness_result_set *set,

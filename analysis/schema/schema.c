@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "analysis/calibration/properties/quantity.h"
+#include "analysis/harness/harness_follow.h"
 #include "analysis/harness/harness_output.h"
 #include "analysis/schema/tables.h"
 
@@ -14,6 +15,7 @@ const struct wb_schema_document wb_schema_documents[WB_SCHEMA_DOCUMENTS] = {
     {"properties", "properties file of wirebench, its YAML read as JSON",
      &wb_schema_properties_keys},
     {"harness", "harness.json of wirebench", &wb_harness_output_keys},
+    {"harness-answer", "answers of wirebench solve harness --follow", &wb_harness_follow_keys},
 };
 
 const struct wb_schema_document *wb_schema_find(const char *name)

@@ -14,7 +14,7 @@ struct wb_schema_document {
 };
 
 enum {
-    WB_SCHEMA_DOCUMENTS = 5
+    WB_SCHEMA_DOCUMENTS = 6
 };
 extern const struct wb_schema_document wb_schema_documents[WB_SCHEMA_DOCUMENTS];
 

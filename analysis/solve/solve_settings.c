@@ -114,6 +114,10 @@ static const struct wb_setting rows[] = {
                    "With --uncertain, cases in place of the file's scenarios: all combinations of "
                    "layers, overlap (percent) and wires"),
      .applies = WB_SOLVE_BUNDLE},
+    {WB_ROW_BOOLEAN(wb_solve_settings, follow, "follow", false),
+     WB_ROW_OPTION("follow", NULL,
+                   "Take steps as lines of JSON from standard input, and answer each with a line"),
+     .applies = WB_SOLVE_HARNESS},
 };
 
 const struct wb_setting_table wb_solve_settings_table = {WB_SETTING_ROWS(rows)};

@@ -65,6 +65,8 @@ struct wb_solve_settings {
     bool uncertain;    /* bands, by analysis/predict/bands.h */
     int runs, seed;    /* of the bands */
     const char *sweep; /* cases in place of the file's scenarios; NULL: none */
+    /* Setting of harnesses. */
+    bool follow; /* steps from standard input */
 };
 
 extern const struct wb_setting_table wb_solve_settings_table;

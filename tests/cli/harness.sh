@@ -91,4 +91,55 @@ ends_with 1 'wirebench solve harness' solve bundle "$root/fixtures/harnesses/sma
 sed 's/at_mm: \[190, 0, 30\]/at_mm: [190, 0, 130]/' "$root/fixtures/harnesses/small.yaml" >far.yaml
 ends_with 1 'far.yaml:20: at_mm: C1 to R: 230.2 mm apart, 200 mm of wire' solve harness far.yaml -o far
 [ ! -e far ] || fail 'a rejected file leaves a folder'
+
+# Steps as lines of JSON: each answer arrives before the next line is sent, forces are those of the
+# file's steps, and a wrong line does not end the session.
+"$wirebench" info --schema harness-answer >answer.schema.json || fail 'no schema of the answers'
+python3 - "$wirebench" out answer.schema.json <<'PYTHON' || fail '--follow'
+import json, subprocess, sys
+try:
+    from jsonschema import Draft202012Validator
+    validator = Draft202012Validator(json.load(open(sys.argv[3])))
+except ImportError:
+    validator = None
+expected = json.load(open(sys.argv[2] + "/harness.json"))["steps"]
+lines = [
+    "hang",
+    {"mount": "C1", "at_mm": [190, 0, 30], "direction": [1, 0.2, 0.2]},
+    {"mount": "K1", "at_mm": [420, -140, 60], "direction": [0.5, -1, 0]},
+    {"mount": "K2", "at_mm": [430, 170, 20], "direction": [0.3, 1, 0]},
+    {"move": "C1", "at_mm": [190, 20, 30]},
+    {"release": "K1"},
+    {"take_off": True},
+]
+session = subprocess.Popen([sys.argv[1], "solve", "harness", "small", "--follow"], text=True,
+                           stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+def ask(line):
+    session.stdin.write(json.dumps(line) + "\n")
+    session.stdin.flush()
+    answer = json.loads(session.stdout.readline())
+    if validator:
+        validator.validate(answer)
+    return answer
+def without(forces):
+    return [{key: value for key, value in force.items() if key not in
+             ("soft_torsion_force_N", "twist_sensitive")} for force in forces]
+assert ask({"describe": True})["state"] == 0
+for line, step in zip(lines, expected):
+    answer = ask(line)
+    for key in ("name", "converged", "increments", "plastic_mJ", "branches"):
+        assert answer[key] == step[key], (key, answer[key], step[key])
+    assert without(answer["forces"]) == without(step["forces"])
+assert ask({"move": "C9", "at_mm": [0, 0, 0]})["error"].startswith("move: no connector")
+again = ask({"undo": 3, "shapes": "all"})
+assert again["state"] == 4 and without(again["forces"]) == without(expected[3]["forces"])
+session.stdin.close()
+assert session.stdout.read() == "" and session.wait() == 0
+PYTHON
+echo '{"quit": true}' | "$wirebench" solve harness small --follow >said 2>/dev/null || fail 'quit'
+[ "$(cat said)" = '{"quit": true}' ] || fail "quit: $(cat said)"
+echo '{"state": true}' | "$wirebench" solve harness small --follow >/dev/full 2>said
+[ $? -eq 1 ] && grep -q 'cannot be written' said || fail "a full output: $(cat said)"
+ends_with 2 '--follow writes no files' solve harness small --follow -o follow
+ends_with 2 '--follow' solve bundle 7-type3 --follow
 finish 'solve harness'
