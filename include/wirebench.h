@@ -413,6 +413,82 @@ enum wirebench_status wirebench_solve_three_point(const struct wirebench_propert
                                                   size_t n, const double *deflection,
                                                   struct wirebench_three_point_result *result);
 
+/* --- harnesses --- */
+
+/* A branched harness that is assembled step by step. */
+struct wirebench_harness;
+
+struct wirebench_harness_settings {
+    size_t size;
+    int is_elastic;        /* the same wires without yielding */
+    double element_length; /* m, at most; 0: 1/100 of the length of all branches */
+};
+
+/* Reads a harness file, or a shipped one by its name, "door"; the harness has its stress-free shape
+ * and is held at its root. `settings` may be NULL: the defaults. */
+enum wirebench_status wirebench_harness_read(struct wirebench_harness **out,
+                                             const char *path_or_name,
+                                             const struct wirebench_harness_settings *settings);
+void wirebench_harness_destroy(struct wirebench_harness *harness);
+
+enum wirebench_harness_step_kind {
+    WIREBENCH_HANG,    /* its weight acts from now on */
+    WIREBENCH_MOUNT,   /* an item is held and moved to its place */
+    WIREBENCH_MOVE,    /* a mounted item is moved */
+    WIREBENCH_RELEASE, /* an item is let go */
+    WIREBENCH_TAKE_OFF /* all items and the weight are let go: the last step */
+};
+
+struct wirebench_harness_step {
+    size_t size;
+    enum wirebench_harness_step_kind kind;
+    const char *item;    /* root, connector or clip; NULL for the whole harness */
+    double position[3];  /* m, where it goes */
+    double direction[3]; /* of the wire there; 0, 0, 0: not given */
+    double up[3];        /* upwards in its section, of a connector; 0, 0, 0: not given */
+};
+
+/* Step `index` from 0 of the harness file; not taken. */
+enum wirebench_status wirebench_harness_planned_step(const struct wirebench_harness *harness,
+                                                     int index,
+                                                     struct wirebench_harness_step *step);
+
+/* Takes a step. WIREBENCH_INCOMPLETE if it finds no equilibrium: the state is then the last one on
+ * its way, or before a release. WIREBENCH_ERR_ARGUMENT if the step is not possible, for example
+ * because wires are too short; the state is then unchanged. */
+enum wirebench_status wirebench_harness_take_step(struct wirebench_harness *harness,
+                                                  const struct wirebench_harness_step *step);
+
+/* Undoes the last n steps and restored snapshots, of which 100 are kept. The state is the same, bit
+ * for bit. */
+enum wirebench_status wirebench_harness_undo(struct wirebench_harness *harness, int n);
+/* Keeps the state under a name, and returns to it. */
+enum wirebench_status wirebench_harness_snapshot(struct wirebench_harness *harness,
+                                                 const char *name);
+enum wirebench_status wirebench_harness_restore(struct wirebench_harness *harness,
+                                                const char *name);
+
+struct wirebench_harness_info {
+    size_t size;
+    const char *name, *title;         /* of the file */
+    int n_branches, n_items, n_steps; /* of the file */
+    int state;                        /* number of steps from the stress-free harness on */
+    const char *step;                 /* that led to it, "mount C1"; "": none */
+    int is_converged;                 /* it found an equilibrium */
+    double fraction;                  /* of the step that was completed */
+    int n_snaps;                      /* of the step */
+    double elastic;                   /* J, given back when the wires are unloaded elastically */
+    double plastic;                   /* J, plastic work from the first step on */
+};
+
+enum wirebench_status wirebench_harness_describe(const struct wirebench_harness *harness,
+                                                 struct wirebench_harness_info *info);
+
+/* Table "shapes" (places along the branches), "items", "forces" (on mounted items) or "branches"
+ * (bend radii) of the current state, valid until it changes. docs/library.md lists the columns. */
+enum wirebench_status wirebench_harness_table(struct wirebench_harness *harness, const char *name,
+                                              const struct wirebench_table **table);
+
 /* --- calibration --- */
 
 enum wirebench_method {

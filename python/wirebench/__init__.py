@@ -28,7 +28,7 @@ import numpy as _np
 
 from . import _structs as _s
 
-__all__ = ["Dataset", "Error", "Incomplete", "Properties", "Recording", "Remark", "Table",
+__all__ = ["Dataset", "Error", "Harness", "Incomplete", "Properties", "Recording", "Remark", "Table",
            "align", "calibrate", "revision", "solve_cantilever", "solve_three_point", "version"]
 
 
@@ -300,6 +300,88 @@ class Properties(_Handle):
     def bend(self, largest):
         """rigidity, residual_curvature_ratio and loop_energy of bending to `largest` (1/m)."""
         return _described(_s.Bending, _lib.wirebench_bend, self._open, largest)
+
+
+class Harness(_Handle):
+    """A branched harness that is assembled step by step: a harness file, or a shipped one by its
+    name, "door".
+
+    A step that finds no equilibrium gives the warning Incomplete; one that is not possible raises
+    Error and changes nothing.
+    """
+
+    _free = _lib.wirebench_harness_destroy
+    _kinds = ("hang", "mount", "move", "release", "take_off")
+
+    def __init__(self, path_or_name, *, is_elastic=False, element_length=0.0):
+        settings = _s.HarnessSettings(size=_c.sizeof(_s.HarnessSettings),
+                                      is_elastic=bool(is_elastic), element_length=element_length)
+        super().__init__(_lib.wirebench_harness_read, _path(path_or_name), _c.byref(settings))
+
+    @property
+    def info(self):
+        """The current state: struct wirebench_harness_info."""
+        return _described(_s.HarnessInfo, _lib.wirebench_harness_describe, self._open)
+
+    @property
+    def planned_steps(self):
+        """The steps of the file, for take_step()."""
+        steps = []
+        for index in range(self.info.n_steps):
+            steps.append(_s.HarnessStep(size=_c.sizeof(_s.HarnessStep)))
+            _check(_lib.wirebench_harness_planned_step(self._open, index, _c.byref(steps[-1])))
+        return steps
+
+    def take_step(self, step):
+        """A step of planned_steps."""
+        _check(_lib.wirebench_harness_take_step(self._open, _c.byref(step)))
+
+    def _take(self, kind, item=None, position=None, direction=None, up=None):
+        def vector(given):
+            return (_c.c_double * 3)(*(given if given is not None else (0.0, 0.0, 0.0)))
+
+        self.take_step(_s.HarnessStep(size=_c.sizeof(_s.HarnessStep), kind=self._kinds.index(kind),
+                                      item=None if item is None else item.encode(),
+                                      position=vector(position), direction=vector(direction),
+                                      up=vector(up)))
+
+    def hang(self):
+        """The weight acts from now on."""
+        self._take("hang")
+
+    def mount(self, item, position, direction=None, up=None):
+        """An item is held and moved to its place (m)."""
+        self._take("mount", item, position, direction, up)
+
+    def move(self, item, position, direction=None, up=None):
+        """A mounted item is moved (m)."""
+        self._take("move", item, position, direction, up)
+
+    def release(self, item):
+        """An item is let go."""
+        self._take("release", item)
+
+    def take_off(self):
+        """All items and the weight are let go: the last step."""
+        self._take("take_off")
+
+    def undo(self, n=1):
+        """Undoes the last n steps and restored snapshots."""
+        _check(_lib.wirebench_harness_undo(self._open, n))
+
+    def snapshot(self, name):
+        """Keeps the state under a name."""
+        _check(_lib.wirebench_harness_snapshot(self._open, name.encode()))
+
+    def restore(self, name):
+        """Returns to the state that was kept under a name."""
+        _check(_lib.wirebench_harness_restore(self._open, name.encode()))
+
+    def table(self, name="shapes"):
+        """Table "shapes", "items", "forces" or "branches" of the current state."""
+        table = _c.c_void_p()
+        _check(_lib.wirebench_harness_table(self._open, name.encode(), _c.byref(table)))
+        return Table(table)
 
 
 def version():

@@ -103,6 +103,17 @@ ThreePointResult = _struct("ThreePointResult", _SIZE,
                              for name in "force travel middle_moment middle_curvature".split()],
                            ("slack", INTS), ("n_done", c.c_size_t))
 
+HarnessSettings = _struct("HarnessSettings", _SIZE, ("is_elastic", c.c_int),
+                          ("element_length", c.c_double))
+
+HarnessStep = _struct("HarnessStep", _SIZE, ("kind", c.c_int), ("item", c.c_char_p),
+                      *[(name, c.c_double * 3) for name in "position direction up".split()])
+
+HarnessInfo = _struct("HarnessInfo", _SIZE, ("name", c.c_char_p), ("title", c.c_char_p),
+                      *_ints("n_branches n_items n_steps state"), ("step", c.c_char_p),
+                      ("is_converged", c.c_int), ("fraction", c.c_double), ("n_snaps", c.c_int),
+                      *_doubles("elastic plastic"))
+
 Calibration = _struct("Calibration", _SIZE, *_ints("method threads"),
                       ("options", c.POINTER(c.c_char_p)), ("progress", PROGRESS),
                       ("context", c.c_void_p))
@@ -112,7 +123,8 @@ STRUCTS = {"column": Column, "recording_info": RecordingInfo, "stream": Stream,
            "dataset_info": DatasetInfo, "alignment": Alignment, "part": Part, "back": Back, "law": Law,
            "estimate": Estimate, "properties_info": PropertiesInfo, "bending": Bending, "cantilever": Cantilever,
            "cantilever_result": CantileverResult, "three_point": ThreePoint,
-           "three_point_result": ThreePointResult, "calibration": Calibration}
+           "three_point_result": ThreePointResult, "harness_settings": HarnessSettings,
+           "harness_step": HarnessStep, "harness_info": HarnessInfo, "calibration": Calibration}
 
 _HANDLE, _OUT = c.c_void_p, c.POINTER(c.c_void_p)
 
@@ -151,6 +163,15 @@ FUNCTIONS = {
                          c.POINTER(CantileverResult)),
     "solve_three_point": (c.c_int, _HANDLE, c.POINTER(ThreePoint), c.c_size_t, DOUBLES,
                           c.POINTER(ThreePointResult)),
+    "harness_read": (c.c_int, _OUT, c.c_char_p, c.POINTER(HarnessSettings)),
+    "harness_destroy": (None, _HANDLE),
+    "harness_planned_step": (c.c_int, _HANDLE, c.c_int, c.POINTER(HarnessStep)),
+    "harness_take_step": (c.c_int, _HANDLE, c.POINTER(HarnessStep)),
+    "harness_undo": (c.c_int, _HANDLE, c.c_int),
+    "harness_snapshot": (c.c_int, _HANDLE, c.c_char_p),
+    "harness_restore": (c.c_int, _HANDLE, c.c_char_p),
+    "harness_describe": (c.c_int, _HANDLE, c.POINTER(HarnessInfo)),
+    "harness_table": (c.c_int, _HANDLE, c.c_char_p, _OUT),
     "calibrate": (c.c_int, _OUT, _OUT, c.c_size_t, c.POINTER(Calibration)),
 }
 

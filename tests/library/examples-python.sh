@@ -17,3 +17,4 @@ compare calibrate_dataset "$dataset"
 compare calibrate_dataset "$recording"
 compare solve_cantilever type1 0.085 0.05
 compare solve_three_point type1 0.04 0.008
+compare assemble_harness small

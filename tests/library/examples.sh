@@ -64,5 +64,14 @@ awk -v rows="$rows" 'NR == FNR { tool[NR] = $1; next }
     END { exit bad }' "$folder/forces" "$folder/library-forces" ||
     fail "solve_three_point differs from the tool"
 
+# A harness: the forces of each step, and those of the step before the last again after an undo.
+"$examples/assemble_harness" small >"$folder/assembled"
+"$tool" solve harness small -o "$folder/harness" >/dev/null 2>&1
+awk -F, 'NR > 1 { printf "%s,%s,%.9g\n", $1, $2, $3; if ($1 == 6) last = last sprintf("%s,%s,%.9g\n", $1, $2, $3) }
+    END { printf "%s", last }' "$folder/harness/forces.csv" >"$folder/expected"
+awk -F, 'NR > 1 { print $1 "," $3 "," $4 }' "$folder/assembled" | cmp -s - "$folder/expected" ||
+    fail "assemble_harness: $(cat "$folder/assembled") instead of $(cat "$folder/expected")"
+[ "$(wc -l <"$folder/expected")" -gt 15 ] || fail "not all steps of the harness"
+
 ! "$examples/solve_cantilever" none 0.085 0.05 2>"$folder/err" || fail "a wire that is not there"
 grep -q "^solve_cantilever: .*'none'" "$folder/err" || fail "$(cat "$folder/err")"

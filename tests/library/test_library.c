@@ -694,6 +694,174 @@ static void the_state_of_the_process_is_not_changed(void **state)
     wirebench_dataset_close((struct wirebench_dataset *)dataset);
 }
 
+/* --- harnesses --- */
+
+static struct wirebench_column column_of(struct wirebench_harness *harness, const char *name,
+                                         const char *column)
+{
+    const struct wirebench_table *table = NULL;
+    struct wirebench_column found = {.size = sizeof found};
+    assert_success(wirebench_harness_table(harness, name, &table));
+    assert_success(wirebench_table_find(table, column, &found));
+    return found;
+}
+
+static struct wirebench_harness *small_harness(int n_steps)
+{
+    struct wirebench_harness *harness = NULL;
+    assert_success(wirebench_harness_read(&harness, "small", NULL));
+    for (int i = 0; i < n_steps; i++) {
+        struct wirebench_harness_step step = {.size = sizeof step};
+        assert_success(wirebench_harness_planned_step(harness, i, &step));
+        assert_success(wirebench_harness_take_step(harness, &step));
+    }
+    return harness;
+}
+
+static void a_harness_is_moved_and_the_move_undone_bit_for_bit(void **state)
+{
+    (void)state;
+    struct wirebench_harness *const harness = small_harness(2);
+    struct wirebench_harness_info info = {.size = sizeof info};
+    double before[3][500];
+    static const char *const columns[] = {"x_m", "z_m", "moment_Nm"};
+    const size_t n = column_of(harness, "shapes", "x_m").n;
+    assert_true(n > 100 && n <= 500);
+    for (int i = 0; i < 3; i++)
+        memcpy(before[i], column_of(harness, "shapes", columns[i]).reals, n * sizeof(double));
+    const struct wirebench_harness_step step = {
+        .size = sizeof step, .kind = WIREBENCH_MOVE, .item = "C1", .position = {0.18, 0.02, 0.03}};
+    assert_success(wirebench_harness_take_step(harness, &step));
+    assert_success(wirebench_harness_describe(harness, &info));
+    assert_int_equal(info.state, 3);
+    assert_string_equal(info.step, "move C1");
+    assert_true(info.is_converged && info.fraction == 1.0 && info.plastic > 0.0);
+    assert_memory_not_equal(before[0], column_of(harness, "shapes", "x_m").reals,
+                            n * sizeof(double));
+    const struct wirebench_column item = column_of(harness, "items", "item");
+    assert_string_equal(item.texts[3], "C1");
+    assert_close(column_of(harness, "items", "x_m").reals[3], 0.18, 1e-10);
+    assert_close(column_of(harness, "items", "z_m").reals[3], 0.03, 1e-10);
+    assert_int_equal(column_of(harness, "items", "mounted").integers[1], 0);
+    assert_int_equal(column_of(harness, "forces", "force_N").n, 2);
+    assert_int_equal(column_of(harness, "branches", "least_radius_m").n, 3);
+    assert_success(wirebench_harness_undo(harness, 1));
+    for (int i = 0; i < 3; i++)
+        assert_memory_equal(before[i], column_of(harness, "shapes", columns[i]).reals,
+                            n * sizeof(double));
+    wirebench_harness_destroy(harness);
+}
+
+static void a_snapshot_of_a_harness_is_restored(void **state)
+{
+    (void)state;
+    struct wirebench_harness *const harness = small_harness(2);
+    struct wirebench_harness_info info = {.size = sizeof info};
+    const struct wirebench_harness_step release = {
+        .size = sizeof release, .kind = WIREBENCH_RELEASE, .item = "C1"};
+    const double force = column_of(harness, "forces", "force_N").reals[1];
+    assert_success(wirebench_harness_snapshot(harness, "mounted"));
+    assert_success(wirebench_harness_take_step(harness, &release));
+    assert_int_equal(column_of(harness, "forces", "force_N").n, 1);
+    assert_success(wirebench_harness_restore(harness, "mounted"));
+    assert_true(column_of(harness, "forces", "force_N").reals[1] == force);
+    assert_success(wirebench_harness_describe(harness, &info));
+    assert_int_equal(info.state, 2);
+    wirebench_harness_destroy(harness);
+}
+
+static void an_elastic_harness_does_not_yield(void **state)
+{
+    (void)state;
+    const struct wirebench_harness_settings settings = {
+        .size = sizeof settings, .is_elastic = 1, .element_length = 0.02};
+    const struct wirebench_harness_step hang = {.size = sizeof hang, .kind = WIREBENCH_HANG};
+    struct wirebench_harness_info info = {.size = sizeof info};
+    struct wirebench_harness *harness = NULL;
+    assert_success(wirebench_harness_read(&harness, "small", &settings));
+    assert_success(wirebench_harness_take_step(harness, &hang));
+    assert_success(wirebench_harness_describe(harness, &info));
+    assert_close(info.plastic, 0.0, 1e-9 * info.elastic);
+    /* 15, 10 and 13 elements of two places, and both ends of three branches. */
+    assert_int_equal(column_of(harness, "shapes", "s_m").n, 2 * (15 + 10 + 13) + 6);
+    wirebench_harness_destroy(harness);
+}
+
+static void steps_that_are_not_possible_are_rejected(void **state)
+{
+    (void)state;
+    static const struct {
+        struct wirebench_harness_step step;
+        enum wirebench_status status;
+        const char *message;
+    } wrong[] = {
+        {{.size = sizeof wrong->step, .kind = WIREBENCH_HANG},
+         WIREBENCH_ERR_ARGUMENT,
+         "hang: the harness hangs already"},
+        {{.size = sizeof wrong->step, .kind = (enum wirebench_harness_step_kind)9},
+         WIREBENCH_ERR_ARGUMENT,
+         "kind: 9: expected 0 to 4"},
+        {{.size = sizeof wrong->step, .kind = WIREBENCH_MOVE, .item = "X"},
+         WIREBENCH_ERR_NOT_FOUND,
+         "no connector, clip or root is named 'X'"},
+        {{.size = sizeof wrong->step, .kind = WIREBENCH_RELEASE},
+         WIREBENCH_ERR_NOT_FOUND,
+         "no connector, clip or root is named ''"},
+        {{.size = sizeof wrong->step, .kind = WIREBENCH_MOVE, .item = "K1"},
+         WIREBENCH_ERR_ARGUMENT,
+         "move K1: K1 is not mounted"},
+        {{.size = sizeof wrong->step,
+          .kind = WIREBENCH_MOVE,
+          .item = "C1",
+          .position = {0.19, 0.0, 0.13}},
+         WIREBENCH_ERR_ARGUMENT,
+         "move C1: C1 to R: 230.2 mm apart, 200 mm of wire"},
+        {{.size = sizeof wrong->step,
+          .kind = WIREBENCH_MOVE,
+          .item = "C1",
+          .position = {(double)NAN, 0.0, 0.0}},
+         WIREBENCH_ERR_ARGUMENT,
+         "position: nan"},
+        {{.size = sizeof wrong->step,
+          .kind = WIREBENCH_MOVE,
+          .item = "C1",
+          .direction = {(double)INFINITY, 0.0, 0.0}},
+         WIREBENCH_ERR_ARGUMENT,
+         "direction: expected finite numbers"},
+        {{.size = sizeof wrong->step,
+          .kind = WIREBENCH_MOUNT,
+          .item = "K1",
+          .position = {0.4, 0.0, 0.0},
+          .direction = {0.0, 0.0, 3.0},
+          .up = {0.0, 0.0, 1.0}},
+         WIREBENCH_ERR_ARGUMENT,
+         "mount K1: it is parallel to `up`"},
+        {{.size = 0}, WIREBENCH_ERR_ARGUMENT, "its size is not set"},
+    };
+    struct wirebench_harness *const harness = small_harness(2);
+    struct wirebench_harness *none = NULL;
+    struct wirebench_harness_step step = {.size = sizeof step};
+    struct wirebench_harness_info info = {.size = sizeof info};
+    const struct wirebench_table *table = NULL;
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        assert_int_equal(wirebench_harness_take_step(harness, &wrong[i].step), wrong[i].status);
+        assert_says(wrong[i].message);
+    }
+    assert_int_equal(wirebench_harness_undo(harness, 3), WIREBENCH_ERR_ARGUMENT);
+    assert_says("undo: 3: expected 1 to 2");
+    assert_int_equal(wirebench_harness_restore(harness, "none"), WIREBENCH_ERR_ARGUMENT);
+    assert_says("no snapshot is named 'none'");
+    assert_int_equal(wirebench_harness_snapshot(harness, ""), WIREBENCH_ERR_ARGUMENT);
+    assert_int_equal(wirebench_harness_planned_step(harness, 7, &step), WIREBENCH_ERR_NOT_FOUND);
+    assert_says("step 7: expected 0 to 6");
+    assert_int_equal(wirebench_harness_table(harness, "force", &table), WIREBENCH_ERR_NOT_FOUND);
+    assert_int_equal(wirebench_harness_read(&none, "no-such", NULL), WIREBENCH_ERR_NOT_FOUND);
+    assert_null(none);
+    assert_success(wirebench_harness_describe(harness, &info));
+    assert_int_equal(info.state, 2);
+    wirebench_harness_destroy(harness);
+}
+
 /* --- threads --- */
 
 struct thread {
@@ -777,6 +945,10 @@ int main(int argc, char **argv)
         FACT(progress_stops_a_calibration),
         FACT(options_are_those_of_the_command),
         FACT(the_state_of_the_process_is_not_changed),
+        FACT(a_harness_is_moved_and_the_move_undone_bit_for_bit),
+        FACT(a_snapshot_of_a_harness_is_restored),
+        FACT(an_elastic_harness_does_not_yield),
+        FACT(steps_that_are_not_possible_are_rejected),
         FACT(each_thread_has_its_own_messages),
     };
     if (argc != 3) {

@@ -84,6 +84,31 @@ static enum wirebench_status calibrate(struct things *things)
     return status;
 }
 
+static struct wirebench_harness *coarse_harness(enum wirebench_status *status)
+{
+    const struct wirebench_harness_settings settings = {
+        .size = sizeof settings, .is_elastic = 1, .element_length = 0.1};
+    struct wirebench_harness *harness = NULL;
+    *status = wirebench_harness_read(&harness, "small", &settings);
+    return harness;
+}
+
+static const struct wirebench_harness_step hang = {.size = sizeof hang, .kind = WIREBENCH_HANG};
+
+static enum wirebench_status step_harness(struct things *things)
+{
+    const struct wirebench_table *table;
+    enum wirebench_status status;
+    struct wirebench_harness *const harness = coarse_harness(&status);
+    if (status == WIREBENCH_OK)
+        status = wirebench_harness_take_step(harness, &hang);
+    if (status == WIREBENCH_OK)
+        status = wirebench_harness_table(harness, "shapes", &table);
+    wirebench_harness_destroy(harness);
+    (void)things;
+    return status;
+}
+
 static void set_up(struct things *things)
 {
     const struct wirebench_law law = {
@@ -105,6 +130,7 @@ static void each_call_without_memory_returns_its_status(void **state)
         {"properties", create, 1, 1},       {"bend", bend, 1, 1},
         {"cantilever", solve, 5, 1},        {"three points", solve_three_point, 5, 1},
         {"dataset", read_dataset, 20, 149}, {"calibrate", calibrate, 20, 2},
+        {"harness", step_harness, 20, 5},
     };
     struct things things;
     set_up(&things);
@@ -140,6 +166,31 @@ static void each_call_without_memory_returns_its_status(void **state)
     wirebench_dataset_close(things.dataset);
 }
 
+/* Without memory for a step nothing has changed; without memory for a table it is made later. */
+static void a_harness_goes_on_after_a_call_without_memory(void **state)
+{
+    (void)state;
+    enum wirebench_status status;
+    const struct wirebench_table *table = NULL;
+    struct wirebench_harness_info info = {.size = sizeof info};
+    struct wirebench_harness *const harness = coarse_harness(&status);
+    for (int at = 1; at <= 2; at++) {
+        allocations = 0;
+        fail_at = at;
+        assert_int_equal(wirebench_harness_take_step(harness, &hang), WIREBENCH_ERR_MEMORY);
+        allocations = 0;
+        assert_int_equal(wirebench_harness_table(harness, "shapes", &table), WIREBENCH_ERR_MEMORY);
+        fail_at = 0;
+    }
+    assert_int_equal(wirebench_harness_describe(harness, &info), WIREBENCH_OK);
+    assert_int_equal(info.state, 0);
+    assert_int_equal(wirebench_harness_take_step(harness, &hang), WIREBENCH_OK);
+    assert_int_equal(wirebench_harness_table(harness, "shapes", &table), WIREBENCH_OK);
+    assert_true(wirebench_table_rows(table) > 10);
+    assert_int_equal(wirebench_harness_undo(harness, 1), WIREBENCH_OK);
+    wirebench_harness_destroy(harness);
+}
+
 static void gsls_handler_is_restored(void **state)
 {
     (void)state;
@@ -165,6 +216,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_call_without_memory_returns_its_status),
+        cmocka_unit_test(a_harness_goes_on_after_a_call_without_memory),
         cmocka_unit_test(gsls_handler_is_restored),
     };
     if (argc != 2)

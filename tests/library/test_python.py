@@ -197,6 +197,47 @@ class Mechanics(unittest.TestCase):
         self.assertTrue(math.isnan(bent.force[1]))
 
 
+class Harness(unittest.TestCase):
+    def test_a_harness_is_assembled_and_undone(self):
+        with wirebench.Harness("small") as harness:
+            self.assertEqual((harness.info.name, harness.info.n_steps, harness.info.state),
+                             ("small", 7, 0))
+            harness.hang()
+            harness.mount("C1", [0.19, 0, 0.03], direction=[1, 0.2, 0.2])
+            before, forces = harness.table(), harness.table("forces")
+            self.assertEqual(list(forces["item"]), ["R", "C1"])
+            self.assertEqual(set(before["branch"]), {"B1", "B2", "B3"})
+            self.assertEqual(before.units["moment_Nm"], "N m")
+            harness.snapshot("mounted")
+            harness.move("C1", np.array([0.19, 0.02, 0.03]))
+            items = harness.table("items")
+            np.testing.assert_allclose(items["y_m"][list(items["item"]).index("C1")], 0.02,
+                                       atol=1e-10)
+            self.assertGreater(np.abs(harness.table()["y_m"] - before["y_m"]).max(), 0.015)
+            harness.undo()
+            for column in before:
+                np.testing.assert_array_equal(harness.table()[column], before[column])
+            harness.release("C1")
+            harness.restore("mounted")
+            np.testing.assert_array_equal(harness.table("forces")["force_N"], forces["force_N"])
+            with self.assertRaisesRegex(wirebench.Error, "C1 to R: 230.2 mm apart, 200 mm"):
+                harness.move("C1", [0.19, 0, 0.13])
+            harness.take_off()
+            self.assertTrue(harness.info.is_converged)
+            self.assertEqual(harness.info.step, "take_off")
+
+    def test_steps_of_the_file_are_those_of_the_methods(self):
+        one, other = wirebench.Harness("small"), wirebench.Harness("small")
+        for step in one.planned_steps[:2]:
+            one.take_step(step)
+        other.hang()
+        other.mount("C1", [0.19, 0, 0.03], [1, 0.2, 0.2])
+        np.testing.assert_allclose(one.table()["z_m"], other.table()["z_m"], rtol=1e-9, atol=1e-12)
+        elastic = wirebench.Harness("small", is_elastic=True)
+        elastic.hang()
+        self.assertLess(elastic.info.plastic, 1e-9 * elastic.info.elastic)
+
+
 class Calibration(unittest.TestCase):
     def test_both_methods_give_properties_that_can_be_read(self):
         dataset = wirebench.Dataset(DATASET)
