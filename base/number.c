@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,7 +49,10 @@ char *wb_number_format(double value, char text[WB_NUMBER_TEXT])
         return strcpy(text, "nan");
     if (isinf(value))
         return strcpy(text, value > 0.0 ? "inf" : "-inf");
-    for (int digits = 6; digits <= 17; digits++) {
+    /* A number that reads back from fewer than DBL_DIG digits also does from DBL_DIG. */
+    snprintf(text, WB_NUMBER_TEXT, "%.*g", DBL_DIG, value);
+    const bool is_long = strtod(text, NULL) != value;
+    for (int digits = is_long ? DBL_DIG + 1 : 6; digits <= 17; digits++) {
         snprintf(text, WB_NUMBER_TEXT, "%.*g", digits, value);
         if (strtod(text, NULL) == value)
             break;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/number.h"
+#include "base/random.h"
 
 static void plain_decimals_are_numbers(void **state)
 {
@@ -72,6 +73,27 @@ static void formatting_is_short_where_it_can_be(void **state)
     assert_string_equal(wb_number_format(-(double)INFINITY, text), "-inf");
 }
 
+/* Numbers of all sizes and lengths, also those below DBL_MIN. */
+static void formatting_is_that_of_the_fewest_digits(void **state)
+{
+    (void)state;
+    for (uint64_t i = 0; i < 50000; i++) {
+        char text[WB_NUMBER_TEXT], expected[WB_NUMBER_TEXT];
+        double value = ldexp(wb_random_between(1, 2, i, -1.0, 1.0), (int)(i % 2100) - 1070);
+        if (i % 2 == 0) {
+            snprintf(text, sizeof text, "%.*g", 1 + (int)(i % 17), value);
+            value = strtod(text, NULL);
+        }
+        for (int digits = 6; digits <= 17; digits++) {
+            snprintf(expected, sizeof expected, "%.*g", digits, value);
+            if (strtod(expected, NULL) == value)
+                break;
+        }
+        if (isfinite(value))
+            assert_string_equal(wb_number_format(value, text), expected);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -80,6 +102,7 @@ int main(void)
         cmocka_unit_test(whole_numbers_stay_in_range),
         cmocka_unit_test(formatting_reads_back_bit_for_bit),
         cmocka_unit_test(formatting_is_short_where_it_can_be),
+        cmocka_unit_test(formatting_is_that_of_the_fewest_digits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
