@@ -18,6 +18,8 @@ static const int max_iterations = 20, max_scaled_down = 4;
 /* Largest residual over the largest internal force; distance and rotation from a hold's target over
  * the length of the harness, and in rad. */
 static const double force_tolerance = 1e-10, hold_tolerance = 1e-11;
+/* The same for states on the way of a motion. */
+static const double passing_force = 1e-6, passing_hold = 1e-8;
 
 /* Smallest increment as a fraction of the move. */
 static const double smallest_increment = 1e-4;
@@ -29,6 +31,9 @@ static const double smallest_increment = 1e-4;
 static const int max_steps = 2000;
 static const double turn_part = 0.6, curve_part = 0.1, max_growth = 2.2, max_shrinkage = 0.3;
 static const double last_drag = 1e-4;
+/* Where a step turns by less than `slow_turn`, the state without drag is tried: the motion ends
+ * there if that is within `rest_turn`; otherwise it is tried again when steps are longer. */
+static const double slow_turn = 3e-3, rest_turn = 0.1, next_trial_ratio = 100.0;
 /* The shortest step, in units of the first; a motion that needs a shorter one has failed. */
 static const double least_step = 1e-9;
 
@@ -83,16 +88,19 @@ void wb_harness_solver_destroy(struct wb_harness_solver *solver)
     free(solver);
 }
 
-/* Iterates the trial state to an equilibrium under `weight` times the weight. */
-static enum outcome iterate(struct wb_harness_solver *s, double weight,
+/* Iterates the trial state to an equilibrium under `weight` times the weight. Of a state on the way
+ * (`passing`) the tolerance is larger, and its stiffness that of the iteration before. */
+static enum outcome iterate(struct wb_harness_solver *s, double weight, bool passing,
                             struct wb_harness_result *result)
 {
+    const double part = passing ? passing_force : force_tolerance;
+    const double apart = passing ? passing_hold : hold_tolerance;
     struct wb_harness *const h = s->harness;
     int scaled_down = 0;
     for (int i = 0;; i++) {
         struct wb_harness_balance balance;
         wb_harness_evaluate(h, weight, &balance);
-        const double tolerance = fmax(force_tolerance * balance.largest_force, wb_harness_noise(h));
+        const double tolerance = fmax(part * balance.largest_force, wb_harness_noise(h));
         result->residual = balance.largest_force > 0.0
                                ? balance.largest_residual / balance.largest_force
                                : balance.largest_residual;
@@ -100,9 +108,10 @@ static enum outcome iterate(struct wb_harness_solver *s, double weight,
         if (!(isfinite(balance.largest_force) && isfinite(balance.largest_residual)))
             return NOT_FINITE;
         const bool done = balance.largest_residual <= tolerance &&
-                          balance.farthest_hold <= hold_tolerance * s->length &&
-                          balance.farthest_turn <= hold_tolerance;
-        wb_harness_solve(h);
+                          balance.farthest_hold <= apart * s->length &&
+                          balance.farthest_turn <= apart;
+        if (!(done && passing && i > 0))
+            wb_harness_solve(h);
         if (done)
             return wb_harness_negative(h) > 0              ? UNSTABLE
                    : wb_harness_turn(h) > s->most_rotation ? TURNED
@@ -172,9 +181,11 @@ static enum outcome settle(struct wb_harness_solver *s, double weight,
     struct wb_harness *const h = s->harness;
     enum outcome outcome = ITERATIONS;
     double size = 1.0 / s->stiffest, last_size = 0.0;
-    bool rests = false;
+    double next_trial = 0.0; /* size from which on a state without drag is tried */
+    bool rests = false, is_slow = false;
     for (int step = 0; step < max_steps && !rests && size * s->stiffest > least_step; step++) {
-        const bool last = size * last_drag * s->softest >= 1.0;
+        const bool at_end = size * last_drag * s->softest >= 1.0;
+        const bool last = at_end || (is_slow && size >= next_trial);
         const double ratio = last_size > 0.0 ? size / last_size : 0.0;
         const double own = (1.0 + 2.0 * ratio) / (1.0 + ratio);
         const double carried = ratio * ratio / (1.0 + ratio);
@@ -184,13 +195,18 @@ static enum outcome settle(struct wb_harness_solver *s, double weight,
         else
             wb_harness_revert(h);
         remember(s, s->before);
-        outcome = iterate(s, weight, result);
+        outcome = iterate(s, weight, !last, result);
         const double turn = wb_harness_turn(h) / s->most_rotation;
+        if (last && !at_end && (outcome != EQUILIBRIUM || turn > rest_turn)) {
+            next_trial = next_trial_ratio * size;
+            continue;
+        }
         if (outcome == EQUILIBRIUM) {
             const double ratio_next = next_size(s);
             wb_harness_commit(h);
             result->increments++;
             rests = last;
+            is_slow = turn < slow_turn;
             if (!rests && is_stopped(move, fraction)) {
                 outcome = STOPPED;
                 break;
@@ -290,7 +306,7 @@ void wb_harness_solver_move(struct wb_harness_solver *s, const struct wb_harness
         const int before = result->iterations;
         double growth_now = max_growth;
         remember(s, s->before);
-        enum outcome outcome = iterate(s, weight, result);
+        enum outcome outcome = iterate(s, weight, false, result);
         if (outcome == EQUILIBRIUM) {
             if (last > 0.0)
                 growth_now = next_size(s);
