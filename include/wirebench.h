@@ -459,8 +459,8 @@ enum wirebench_status wirebench_harness_planned_step(const struct wirebench_harn
 enum wirebench_status wirebench_harness_take_step(struct wirebench_harness *harness,
                                                   const struct wirebench_harness_step *step);
 
-/* Undoes the last n steps and restored snapshots, of which 100 are kept. The state is the same, bit
- * for bit. */
+/* Undoes the last n steps and restored snapshots, of which 100 are kept, fewer of large harnesses
+ * (512 MB). The state is the same, bit for bit. */
 enum wirebench_status wirebench_harness_undo(struct wirebench_harness *harness, int n);
 /* Keeps the state under a name, and returns to it. */
 enum wirebench_status wirebench_harness_snapshot(struct wirebench_harness *harness,

@@ -1,4 +1,5 @@
 #include "analysis/harness/harness_session.h"
+#include "analysis/harness/harness_session_private.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,8 @@
 #include "base/memory.h"
 
 #define WB_LOG_DOMAIN "harness"
+
+static const size_t most_undo_memory = 512 << 20; /* bytes */
 
 /* A state with its results, and what the run needs to return to it. */
 struct kept {
@@ -20,11 +23,17 @@ struct wb_harness_session {
     struct wb_harness_run *run;
     struct wb_harness_session_state now;
     struct kept undo[WB_HARNESS_SESSION_UNDO]; /* a ring */
-    int first, n_undo;                         /* the oldest, and their number */
+    int first, n_undo, most_undo;              /* the oldest, their number and its limit */
     struct kept snapshots[WB_HARNESS_SESSION_SNAPSHOTS];
     int n_snapshots;
     struct wb_memory memory; /* of all states */
 };
+
+int wb_harness_session_most_undo(size_t state_size)
+{
+    const size_t most = most_undo_memory / state_size;
+    return most < 2 ? 2 : most < WB_HARNESS_SESSION_UNDO ? (int)most : WB_HARNESS_SESSION_UNDO;
+}
 
 enum wb_status wb_harness_session_create(struct wb_harness_session **out,
                                          const struct wb_harness_plan *plan,
@@ -35,6 +44,7 @@ enum wb_status wb_harness_session_create(struct wb_harness_session **out,
     struct wb_harness_session *const s = wb_memory_new(1, sizeof *s);
     s->plan = plan;
     s->run = run;
+    s->most_undo = wb_harness_session_most_undo(wb_harness_run_state_size(run));
     wb_harness_run_take_memory(run, &s->memory, &s->now.result);
     wb_harness_run_begin(run, &s->now.result);
     wb_harness_file_begin(plan, &s->now.assembly);
@@ -108,11 +118,11 @@ static void return_to(struct wb_harness_session *s, const struct kept *kept)
 /* Before a change. Beyond their number the oldest state is given up. */
 static void push(struct wb_harness_session *s)
 {
-    keep(s, &s->undo[(s->first + s->n_undo) % WB_HARNESS_SESSION_UNDO]);
-    if (s->n_undo < WB_HARNESS_SESSION_UNDO)
+    keep(s, &s->undo[(s->first + s->n_undo) % s->most_undo]);
+    if (s->n_undo < s->most_undo)
         s->n_undo++;
     else
-        s->first = (s->first + 1) % WB_HARNESS_SESSION_UNDO;
+        s->first = (s->first + 1) % s->most_undo;
 }
 
 /* What is mounted after a step that did not end is what is held, where it is. */
@@ -150,7 +160,7 @@ enum wb_status wb_harness_session_undo(struct wb_harness_session *s, int n, stru
         return wb_fail_to(why, WB_ERR_ARGUMENT, "%d: expected 1 to %d, the number of changes kept",
                           n, s->n_undo);
     s->n_undo -= n;
-    return_to(s, &s->undo[(s->first + s->n_undo) % WB_HARNESS_SESSION_UNDO]);
+    return_to(s, &s->undo[(s->first + s->n_undo) % s->most_undo]);
     return WB_OK;
 }
 

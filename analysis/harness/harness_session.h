@@ -12,7 +12,7 @@
 #include "base/reason.h"
 
 enum {
-    WB_HARNESS_SESSION_UNDO = 100,     /* states that can be undone */
+    WB_HARNESS_SESSION_UNDO = 100,     /* states that can be undone, at most; together 512 MB */
     WB_HARNESS_SESSION_SNAPSHOTS = 100 /* names */
 };
 

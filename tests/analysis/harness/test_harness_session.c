@@ -1,5 +1,6 @@
 /* A session, step by step and by lines of JSON. */
 #include "analysis/harness/harness_follow.h"
+#include "analysis/harness/harness_session_private.h"
 
 #include <string.h>
 
@@ -228,6 +229,15 @@ static void oldest_states_are_given_up(void **unused)
     assert_non_null(strstr(error, "undo: no change to undo"));
 }
 
+static void fewer_large_states_are_kept(void **unused)
+{
+    (void)unused;
+    assert_int_equal(wb_harness_session_most_undo(1000), 100);
+    assert_int_equal(wb_harness_session_most_undo(5 << 20), 100);
+    assert_int_equal(wb_harness_session_most_undo(64 << 20), 8);
+    assert_int_equal(wb_harness_session_most_undo(1000 << 20), 2);
+}
+
 static void step_that_was_stopped_can_be_undone(void **unused)
 {
     (void)unused;
@@ -410,6 +420,7 @@ int main(void)
         FACT(undone_steps_leave_no_trace),
         FACT(snapshots_are_restored_and_a_restored_one_is_undone),
         FACT(oldest_states_are_given_up),
+        FACT(fewer_large_states_are_kept),
         FACT(step_that_was_stopped_can_be_undone),
         FACT(wrong_lines_are_answered_with_an_error_and_change_nothing),
         FACT(nothing_follows_after_take_off_but_an_undo),
