@@ -448,6 +448,61 @@ static void steps_after_a_restored_state_are_the_same_bit_for_bit(void **unused)
     }
 }
 
+static void arch_curvature(void *context, double s, double curvature[3])
+{
+    (void)context, (void)s;
+    curvature[0] = curvature[2] = 0.0;
+    curvature[1] = 4.0;
+}
+
+/* A plane arch between clamps that is loaded in its plane cannot leave it, and has no stable
+ * equilibrium in it beyond a load. */
+static void move_without_an_end_leaves_the_last_equilibrium(void **unused)
+{
+    (void)unused;
+    const double length = 0.3, middle = 0.15;
+    const struct wb_law_part part = {4500.0 * WB_MPA, (double)INFINITY};
+    struct wb_law law;
+    wb_law_init_parallel(&law, &part, 1, 0.0, 0.39);
+    struct wb_law_section *const section = section_of(1.4e-3, &law);
+    const struct wb_harness_branch branch = {.parent = -1,
+                                             .leaving = {1.0, 0.0, 0.0, 0.0},
+                                             .section = section,
+                                             .length = length,
+                                             .natural_curvature = arch_curvature,
+                                             .n_stations = 1,
+                                             .stations = &middle};
+    const struct wb_harness_model model = {
+        .n_branches = 1, .branches = &branch, .element_length = 0.015, .root = test_origin};
+    struct test_harness t = test_harness_make(&model);
+    struct wb_harness *const h = t.harness;
+    const int end = wb_harness_joint(h, 0, length);
+    wb_harness_set_hold(h, end, WB_HARNESS_AXIS, wb_harness_node(h, end));
+    const struct wb_rod_node top = *wb_harness_node(h, wb_harness_joint(h, 0, middle));
+    struct wb_harness_load load = {.joint = wb_harness_joint(h, 0, middle)};
+    for (int k = 0; k < 3; k++) {
+        const double foot = 0.5 * wb_harness_node(h, end)->position[k];
+        load.load[k] = 60.0 * (foot - top.position[k]);
+    }
+    const struct wb_harness_move move = {.n_loads = 1, .loads = &load};
+    struct wb_harness_result result;
+    wb_harness_solver_move(t.solver, &move, &result);
+    assert_int_equal(result.end, WB_HARNESS_NOT_CONVERGED);
+    assert_true(result.fraction > 0.0 && result.fraction < 1.0 && result.n_snaps == 0);
+    double reactions[2][6];
+    wb_harness_reaction(h, 0, reactions[0]);
+    wb_harness_reaction(h, end, reactions[1]);
+    const double size = result.fraction * wb_vec3_length(load.load);
+    for (int k = 0; k < 3; k++)
+        assert_close(reactions[0][k] + reactions[1][k], -result.fraction * load.load[k],
+                     1e-8 * size);
+    struct wb_harness_balance balance;
+    wb_harness_evaluate(h, 0.0, &balance);
+    assert_true(balance.largest_residual <= 1e-9 * balance.largest_force);
+    test_harness_release(&t);
+    wb_law_section_destroy(section);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -457,6 +512,7 @@ int main(void)
         cmocka_unit_test(work_on_the_wire_is_elastic_or_plastic),
         cmocka_unit_test(elastic_tree_returns_after_release),
         cmocka_unit_test(plastic_tree_keeps_a_shape_after_release),
+        cmocka_unit_test(move_without_an_end_leaves_the_last_equilibrium),
         cmocka_unit_test(steps_after_a_restored_state_are_the_same_bit_for_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
