@@ -11,10 +11,10 @@
 static const double character = 4.3, line = 8.5;
 static const double mark = 3.0; /* half the width of a mark with its margin, points */
 
-/* What it costs to cover a point of a line, a mark or a name, and to leave the panel; and to stand
+/* What it costs to cover a point of a line, a mark or a name, to leave the panel, and to stand
  * farther from the point. */
-static const double cost_of_point = 1.0, cost_of_box = 30.0, cost_outside = 100.0,
-                    cost_of_distance = 0.6;
+static const double cost_of_point = 1.0, cost_of_mark = 30.0, cost_of_name = 1e4,
+                    cost_outside = 100.0, cost_of_distance = 0.6;
 
 void wb_harness_labels_release(struct wb_harness_labels *labels)
 {
@@ -42,7 +42,7 @@ static void add_box(struct wb_harness_labels *labels, const struct wb_harness_la
 void wb_harness_labels_add_mark(struct wb_harness_labels *labels, double x, double y)
 {
     const double half = mark * labels->scale;
-    const struct wb_harness_labels_box box = {{x - half, y - half}, {x + half, y + half}};
+    const struct wb_harness_labels_box box = {{x - half, y - half}, {x + half, y + half}, false};
     add_box(labels, &box);
 }
 
@@ -65,8 +65,10 @@ static double cost_of(const struct wb_harness_labels *labels,
                         labels->y[i] > box->low[1] && labels->y[i] < box->high[1]
                     ? cost_of_point
                     : 0.0;
-    for (size_t i = 0; i < labels->n_boxes; i++)
-        cost += overlap(box, &labels->boxes[i]) ? cost_of_box : 0.0;
+    for (size_t i = 0; i < labels->n_boxes; i++) {
+        if (overlap(box, &labels->boxes[i]))
+            cost += labels->boxes[i].is_name ? cost_of_name : cost_of_mark;
+    }
     return cost;
 }
 
@@ -80,11 +82,24 @@ static struct wb_harness_labels_box box_at(double x, double y, int side, double 
                                            double height)
 {
     const double left = side < 0 ? x : side > 0 ? x - width : x - 0.5 * width;
-    return (struct wb_harness_labels_box){{left, y - 0.5 * height},
-                                          {left + width, y + 0.5 * height}};
+    return (struct wb_harness_labels_box){
+        {left, y - 0.5 * height}, {left + width, y + 0.5 * height}, true};
 }
 
-void wb_harness_labels_put(struct wb_harness_labels *labels, struct wb_panel *panel, double x,
+static void add_leader(const struct wb_harness_labels *labels, struct wb_panel *panel, double x,
+                       double y, const struct wb_harness_labels_box *box)
+{
+    static const double nearest = 8.0; /* points: of names that need none */
+    const struct wb_figure_style style = {.colour = wb_palette_fade(wb_palette_grey(), 0.6),
+                                          .width = 0.4};
+    const double end[2] = {fmin(fmax(x, box->low[0]), box->high[0]),
+                           fmin(fmax(y, box->low[1]), box->high[1])};
+    const double xs[2] = {x, end[0]}, ys[2] = {y, end[1]};
+    if (hypot(end[0] - x, end[1] - y) > nearest * labels->scale)
+        wb_figure_add_line(panel, NULL, 2, xs, ys, &style);
+}
+
+bool wb_harness_labels_put(struct wb_harness_labels *labels, struct wb_panel *panel, double x,
                            double y, const char *plain, bool is_italic)
 {
     static const struct candidate candidates[] = {{1, 0.7, -1},  {-1, 0.7, 1}, {1, -0.7, -1},
@@ -92,9 +107,9 @@ void wb_harness_labels_put(struct wb_harness_labels *labels, struct wb_panel *pa
                                                   {1, 0, -1},    {-1, 0, 1}};
     const double width = character * (double)strlen(plain) * labels->scale;
     const double height = line * labels->scale;
-    double least = (double)INFINITY, at[2] = {x, y};
+    double least = cost_of_name, at[2] = {x, y};
     int side = -1;
-    struct wb_harness_labels_box best = {{0}, {0}};
+    struct wb_harness_labels_box best = {{0}, {0}, true};
     for (int ring = 0; ring < 3; ring++) {
         const double way = (5.0 + 9.0 * ring) * labels->scale;
         for (size_t i = 0; i < sizeof candidates / sizeof candidates[0]; i++) {
@@ -111,11 +126,15 @@ void wb_harness_labels_put(struct wb_harness_labels *labels, struct wb_panel *pa
             best = box;
         }
     }
+    if (least >= cost_of_name)
+        return false;
     struct wb_text text = {0};
     wb_text_append(&text, is_italic ? "<i>" : "");
     wb_text_append_escaped(&text, plain);
     wb_text_append(&text, is_italic ? "</i>" : "");
+    add_leader(labels, panel, x, y, &best);
     wb_figure_add_text(panel, at[0], at[1], side, wb_text_string(&text));
     wb_text_release(&text);
     add_box(labels, &best);
+    return true;
 }

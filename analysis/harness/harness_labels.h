@@ -1,5 +1,6 @@
-/* Names beside marks of a drawing, each placed where it covers the least of lines, marks and other
- * names. Coordinates are those of the panel; the caller knows its scale. */
+/* Names beside marks of a drawing, each placed where it covers the least of lines and marks; a line
+ * leads to a name that stands farther away. A name without a place beside the others is left out.
+ * Coordinates are those of the panel; the caller knows its scale. */
 #ifndef WB_ANALYSIS_HARNESS_HARNESS_LABELS_H
 #define WB_ANALYSIS_HARNESS_HARNESS_LABELS_H
 
@@ -10,6 +11,7 @@
 
 struct wb_harness_labels_box {
     double low[2], high[2];
+    bool is_name;
 };
 
 /* Starts with zeroes, the scale and the panel's range. */
@@ -28,8 +30,8 @@ void wb_harness_labels_release(struct wb_harness_labels *labels);
 void wb_harness_labels_add_point(struct wb_harness_labels *labels, double x, double y);
 void wb_harness_labels_add_mark(struct wb_harness_labels *labels, double x, double y);
 
-/* Adds a plain text beside a point of the panel. */
-void wb_harness_labels_put(struct wb_harness_labels *labels, struct wb_panel *panel, double x,
+/* Adds a plain text beside a point of the panel; false: there is no place for it. */
+bool wb_harness_labels_put(struct wb_harness_labels *labels, struct wb_panel *panel, double x,
                            double y, const char *plain, bool is_italic);
 
 #endif

@@ -15,7 +15,7 @@
 #define CURVE_HEIGHT 145.0
 
 enum {
-    MOST_NAMES = 24 /* on a y axis */
+    MOST_NAMES = 16 /* on a y axis */
 };
 
 static int count_steps(const void *context)
@@ -155,6 +155,33 @@ static void add_value(struct wb_figures_points *points, double value, int row)
         wb_figures_add_point(points, value, row);
 }
 
+static bool is_shown(const struct wb_harnesses_results *results, int step, int item)
+{
+    return step < 0 || results->set.results[step].forces[item].is_mounted;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x < y) - (x > y);
+}
+
+/* The largest force that is not shown, N, where there are more items than names; -1: all are. */
+static double largest_hidden(const struct wb_harnesses_results *results, int step)
+{
+    const int n_items = results->campaign->plan->n_items;
+    double *const sizes = wb_memory_new((size_t)n_items, sizeof *sizes);
+    int n = 0;
+    for (int k = 0; k < n_items; k++) {
+        if (is_shown(results, step, k))
+            sizes[n++] = values_of(results, step, k).largest;
+    }
+    qsort(sizes, (size_t)n, sizeof *sizes, by_size);
+    const double hidden = n > MOST_NAMES ? sizes[MOST_NAMES] : -1.0;
+    free(sizes);
+    return hidden;
+}
+
 /* `step` -1: the largest forces of all steps. */
 static void add_forces(struct wb_panel *panel, const struct wb_harnesses_results *results, int step)
 {
@@ -168,12 +195,13 @@ static void add_forces(struct wb_panel *panel, const struct wb_harnesses_results
     const struct wb_figure_style red = {
         .colour = wb_palette_warning(), .marker = WB_MARKER_TRIANGLE, .marker_size = 6.0};
     struct wb_figures_points at_end = {0}, largest = {0}, elastic = {0}, limit = {0};
+    const double hidden = largest_hidden(results, step);
     const char *names[MOST_NAMES];
     int n = 0;
     for (int k = plan->n_items - 1; k >= 0 && n < MOST_NAMES; k--) {
-        if (step >= 0 && !results->set.results[step].forces[k].is_mounted)
-            continue;
         const struct values values = values_of(results, step, k);
+        if (!is_shown(results, step, k) || values.largest <= hidden)
+            continue;
         add_value(&at_end, values.at_end, n);
         add_value(&largest, values.largest, n);
         add_value(&elastic, values.elastic, n);
@@ -191,12 +219,20 @@ static void add_forces(struct wb_panel *panel, const struct wb_harnesses_results
     wb_figures_put_points(panel, "at the end", &at_end, &end);
 }
 
+static void append_hidden(struct wb_text *text, const struct wb_harnesses_results *results,
+                          int step)
+{
+    if (largest_hidden(results, step) >= 0.0)
+        wb_text_append(text, " The table has all; here are those with the largest forces.");
+}
+
 static enum wb_status draw_largest(struct wb_figures_item *item)
 {
     WB_TRY(start(&item->figure, "forces", WB_PDF_HALF_WIDTH, HALF_HEIGHT));
     add_forces(wb_figure_add_panel(item->figure), item->results, -1);
     wb_text_append(&item->caption, "Largest force on the wire during all steps, with the laws of "
                                    "the wires and with elastic wires.");
+    append_hidden(&item->caption, item->results, -1);
     return WB_OK;
 }
 
@@ -208,6 +244,7 @@ static enum wb_status draw_forces(struct wb_figures_item *item)
     add_forces(wb_figure_add_panel(item->figure), item->results, item->index);
     append_step_name(&item->caption, item);
     wb_text_append(&item->caption, ": forces on what is mounted.");
+    append_hidden(&item->caption, item->results, item->index);
     return WB_OK;
 }
 

@@ -34,12 +34,15 @@ static bool covers(const struct wb_harness_labels_box *box, double x, double y)
     return box->low[0] < x && x < box->high[0] && box->low[1] < y && y < box->high[1];
 }
 
+/* As many as have room; the others are left out. */
 static void names_of_one_place_do_not_overlap(void **unused)
 {
     (void)unused;
-    for (int i = 0; i < 8; i++)
-        wb_harness_labels_put(&labels, panel, 100.0, 100.0, "C1", false);
-    assert_int_equal(labels.n_boxes, 8);
+    size_t n = 0;
+    for (int i = 0; i < 60; i++)
+        n += wb_harness_labels_put(&labels, panel, 100.0, 100.0, "C1", false);
+    assert_true(n >= 8 && n < 30);
+    assert_int_equal(labels.n_boxes, n);
     for (size_t i = 0; i < labels.n_boxes; i++) {
         for (size_t k = 0; k < i; k++) {
             const struct wb_harness_labels_box *const a = &labels.boxes[i], *const b =
