@@ -240,8 +240,8 @@ static void incomplete_result_is_reported_as_far_as_it_goes(void **state)
     assert_true(isnan(wb_harnesses_elastic_largest(&part, 3)));
     assert_int_equal(wb_kind_write(&wb_harnesses_kind, &part, in_folder("report"), true, 0), WB_OK);
     static const char *const texts[] = {
-        "The elastoplastic computation ends in step 3 (move C1), at 0.25 of it, in branch B2: no "
-        "&lt;equilibrium&gt;. Later steps are not computed.",
+        "The elastoplastic computation ends in step 3 (move C1), at 0.25 of it, in branch B2: no ",
+        "no &lt;equilibrium&gt;. Later steps are not computed.",
         "The elastic computation ends in step 2 (mount C1)",
         "<b>Not completed</b>: it ends at 0.25 of the step.",
         "1 snap, the first at 0.125 of the step; in the farthest motion B1 moves by 34.0 mm.",
