@@ -1,6 +1,11 @@
-/* wirebench quicklook: curve and shapes of one recording. */
+/* wirebench quicklook: curve and shapes of one recording, or the shape of a harness file. */
+#include <stdio.h>
+#include <stdlib.h>
+
 #include "analysis/align/align.h"
+#include "analysis/harness/harness_quicklook.h"
 #include "analysis/quicklook.h"
+#include "base/memory.h"
 #include "cli/command.h"
 #include "cli/datasets.h"
 #include "cli/file_kind.h"
@@ -17,9 +22,10 @@ static const struct argp_option option_table[] = {
 static const struct argp argp = {
     .options = option_table,
     .parser = wb_command_parse_common,
-    .args_doc = "REC.wbr",
+    .args_doc = "REC.wbr|HARNESS.yaml",
     .doc = "Aligns one recording (.wbr or .wbr.zst) and writes its force-deflection curve and "
-           "shapes as figures (SVG, PNG, PDF) and CSV, with a summary that is also printed.\v"
+           "shapes as figures (SVG, PNG, PDF) and CSV, with a summary that is also printed. Of a "
+           "harness file it draws the stress-free shape; no step is computed.\v"
            "Exit code 3: usable but incomplete (gaps, damaged or lost data, a test that ended "
            "early).",
 };
@@ -38,18 +44,61 @@ static int deliver(const struct wb_dataset *dataset, const struct wb_command_com
     return wb_dataset_is_complete(dataset) ? WB_EXIT_OK : WB_EXIT_INCOMPLETE;
 }
 
-int wb_cmd_quicklook(int argc, char **argv)
+static int look_at_recording(const struct wb_command_common *options)
 {
-    struct wb_command_common options = {.noun = "recording", .destination = "figures go: -o DIR"};
     struct wb_align_settings settings;
     struct wb_dataset dataset;
-    wb_command_parse(&argp, argc, argv, &options);
-
     wb_align_default_settings(&settings);
-    if (wb_file_kind_check(options.input, WB_FILE_BIT(WB_FILE_RECORDING)) != WB_OK ||
-        wb_align_run(&dataset, options.input, &settings, NULL) != WB_OK)
+    if (wb_align_run(&dataset, options->input, &settings, NULL) != WB_OK)
         return WB_EXIT_FAILED;
-    const int code = deliver(&dataset, &options);
+    const int code = deliver(&dataset, options);
     wb_dataset_release(&dataset);
     return code;
+}
+
+static void print_harness(const struct wb_harness_result_set *set,
+                          const struct wb_command_common *options)
+{
+    struct wb_text text = {0};
+    if (options->json) {
+        struct wb_json *const root = wb_json_create();
+        wb_json_set_text(root, "folder", options->output);
+        wb_harness_quicklook_describe(set, root);
+        wb_command_print_json(root);
+        return;
+    }
+    wb_harness_quicklook_summary(set, &text);
+    printf("%s\nwritten to %s\n", wb_text_string(&text), options->output);
+    wb_text_release(&text);
+}
+
+static int look_at_harness(const char *path, const struct wb_command_common *options)
+{
+    struct wb_harness_plan *const plan = wb_memory_new(1, sizeof *plan);
+    struct wb_harness_result_set set = {.plan = NULL};
+    enum wb_status status = wb_harness_file_read(plan, path);
+    if (status == WB_OK)
+        status = wb_harness_quicklook_compute(&set, plan);
+    if (status == WB_OK)
+        status = wb_harness_quicklook_write(&set, options->output, options->force);
+    if (status == WB_OK)
+        print_harness(&set, options);
+    wb_harness_run_release(&set);
+    free(plan);
+    return wb_command_exit(status);
+}
+
+int wb_cmd_quicklook(int argc, char **argv)
+{
+    struct wb_command_common options = {.noun = "recording or harness file",
+                                        .destination = "figures go: -o DIR"};
+    char path[WB_PATH];
+    wb_command_parse(&argp, argc, argv, &options);
+    if (wb_file_kind_find_input(&options.input, path,
+                                WB_FILE_BIT(WB_FILE_RECORDING) | WB_FILE_BIT(WB_FILE_HARNESS)) !=
+        WB_OK)
+        return WB_EXIT_FAILED;
+    return wb_file_kind_find(options.input) == WB_FILE_HARNESS
+               ? look_at_harness(options.input, &options)
+               : look_at_recording(&options);
 }

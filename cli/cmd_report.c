@@ -80,7 +80,7 @@ static const struct argp argp = {
     .doc = "Aligns the recordings of a campaign, calibrates and validates its wires and writes the "
            "report: report.pdf, report.html, report.json and figures/ (SVG and PNG). Campaigns of "
            "kind `comparison` compare datasets of wire models computed by `solve`, those of kind "
-           "`bundles` datasets of bundles.\v"
+           "`bundles` datasets of bundles; one of kind `harness` computes a harness file.\v"
            "The same recordings or datasets and the same revision give the same bytes. --solve and "
            "--slurm first compute the datasets that are missing or outdated (recordings cannot be "
            "computed); run the same command again to continue. Their logs are in DIR.jobs.\n\n"

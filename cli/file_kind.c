@@ -156,10 +156,20 @@ static enum wb_file_kind find_part(const char *path)
 
 /* --- YAML files, by their keys --- */
 
-/* `kind` is the value of that key: of a harness, of a machine, or of a campaign. */
-static enum wb_file_kind find_by_kind(const char *kind)
+/* A harness file has the same `kind` as the campaign that names it. */
+static bool is_harness(const struct wb_config_node *root)
 {
-    if (strcmp(kind, "harness") == 0)
+    static const char *const parts[] = {"branches", "wires", "root", "steps"};
+    bool has_any = false;
+    for (size_t i = 0; i < WB_COUNT(parts); i++)
+        has_any = has_any || wb_config_find(root, parts[i]);
+    return has_any && !wb_config_find(root, "harness");
+}
+
+/* `kind` is the value of that key: of a harness, of a machine, or of a campaign. */
+static enum wb_file_kind find_by_kind(const struct wb_config_node *root, const char *kind)
+{
+    if (strcmp(kind, "harness") == 0 && is_harness(root))
         return WB_FILE_HARNESS;
     static const enum wb_test_kind tests[] = {WB_TEST_CANTILEVER, WB_TEST_THREE_POINT,
                                               WB_TEST_TENSILE};
@@ -206,7 +216,7 @@ static enum wb_file_kind find_map(const struct wb_config_node *root)
     const struct wb_config_node *const node = wb_config_find(root, "kind");
     const char *const name = node ? wb_config_scalar(node) : NULL;
     if (name)
-        return find_by_kind(name);
+        return find_by_kind(root, name);
     for (size_t i = 0; i < WB_COUNT(patterns); i++) {
         bool has_all = true;
         for (size_t k = 0; k < WB_COUNT(patterns[i].keys) && patterns[i].keys[k]; k++)

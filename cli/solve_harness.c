@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "analysis/harness/harness_drawing.h"
+#include "analysis/harness/harness_found.h"
 #include "analysis/harness/harness_output.h"
 #include "analysis/harness/harness_vtk.h"
 #include "base/interrupt.h"
@@ -67,12 +68,14 @@ static void warn_not_converged(const struct wb_harness_result_set *set)
 static void append_trust(struct wb_text *text, const struct wb_harness_result_set *set)
 {
     const struct wb_harness_plan *const plan = set->plan;
+    struct wb_harness_found found;
     const char *between = "; ";
+    wb_harness_found_collect(&found, set);
     wb_text_append(text, set->converged ? "complete" : "in part: see the warning");
-    if (wb_harness_output_exceeds(set))
+    if (found.n_exceeded > 0)
         wb_text_append(text, "; LIMITS EXCEEDED");
     for (int b = 0; b < plan->n_branches; b++) {
-        if (!set->results[set->n_steps - 1].branches[b].is_beyond)
+        if (!wb_harness_found_is_beyond(set, b))
             continue;
         wb_text_append(text, "%s%s", between, plan->branches[b].name);
         between = ", ";

@@ -74,15 +74,16 @@ rooms daq stream protocol take recording acquire test doctor
 rooms fe team linear material swept solid model rod trial section bundle harness output
 rooms analysis keys dataset align import calibration cards validation plot predict compare harness solve jobs report schema
 rooms analysis/calibration law paper cycle three_point constituents properties
-rooms analysis/report draw bench wires bundles machines predictions kinds
+rooms analysis/report draw bench wires bundles machines predictions harnesses kinds
 # The common files of reports include no kind of report, and no kind includes another kind; only
 # kinds/ includes all of them.
 complain 'analysis/report may not include a kind of report:' \
-    "$(grep -nE '^#include "analysis/report/(draw|bench|wires|bundles|machines|predictions|kinds)/' analysis/report/*.[ch])"
+    "$(grep -nE '^#include "analysis/report/(draw|bench|wires|bundles|machines|predictions|harnesses|kinds)/' analysis/report/*.[ch])"
 check analysis/report/wires 'analysis/report/bench/'
 check analysis/report/bundles 'analysis/report/(bench|wires)/'
 check analysis/report/machines 'analysis/report/(bench|wires|bundles)/'
 check analysis/report/predictions 'analysis/report/(bench|wires|bundles|machines)/'
+check analysis/report/harnesses 'analysis/report/(bench|wires|bundles|machines|predictions)/'
 check analysis/jobs 'analysis/solve/'
 
 # A file has one subject; a larger file must be split by subject.

@@ -2,130 +2,583 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
-#include "analysis/plot/figure.h"
+#include "analysis/harness/harness_found.h"
+#include "analysis/harness/harness_labels.h"
+#include "analysis/plot/view.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "base/units.h"
+#include "base/vec3.h"
 
-#define WIDTH 760.0 /* points */
-#define HEIGHT 340.0
+#define WIDTH 1000.0 /* points, of a figure with all panels */
+#define PERSPECTIVE 280.0
 #define PNG_SCALE 2.5
+
+/* Points of a panel beside its plot: axes with numbers and labels, title, footer of the figure. */
+#define BESIDE 48.0
+#define ABOVE 52.0
+#define GAP 10.0 /* between panels */
 
 enum {
     VIEWS = 3
 };
 
-/* The two axes of space that a view shows. */
-static const struct view {
+/* Distance of the eye from the middle over half the diagonal of all that is shown. */
+static const double eye_distance = 4.0;
+static const struct wb_view_camera camera = {.toward = {0.45, -0.80, 0.40}, .up = {0.0, 0.0, 1.0}};
+
+/* How places in space become points of a panel, mm. */
+struct view {
     const char *title, *labels[2];
-    int axes[2];
-} views[VIEWS] = {
-    {"From the side", {"<i>x</i> (mm)", "<i>z</i> (mm)"}, {0, 2}},
-    {"From above", {"<i>x</i> (mm)", "<i>y</i> (mm)"}, {0, 1}},
-    {"From the front", {"<i>y</i> (mm)", "<i>z</i> (mm)"}, {1, 2}},
+    int axes[2]; /* of space, that a parallel view shows */
+    bool is_perspective;
+    double low[3], high[3]; /* of all that is shown, m */
+    double middle[3];       /* of a perspective: what the eye looks at, m */
+    double distance;        /* of the eye from it, m */
+    double grid;            /* between the lines on its floor, m */
+    double width, height;   /* of the panel's plot, points */
 };
 
-/* The last step in which the harness is mounted, and the one in which it was taken off; -1: none.
- */
-static void find_steps(const struct wb_harness_result_set *set, int *mounted, int *off)
+static const struct view parallel_views[VIEWS] = {
+    {"Side view", {"<i>x</i> (mm)", "<i>z</i> (mm)"}, .axes = {0, 2}},
+    {"Top view", {"<i>x</i> (mm)", "<i>y</i> (mm)"}, .axes = {0, 1}},
+    {"Front view", {"<i>y</i> (mm)", "<i>z</i> (mm)"}, .axes = {1, 2}},
+};
+
+static void project(const struct view *view, const double place[3], double *x, double *y)
 {
-    *off = *mounted = -1;
-    for (int i = 0; i < set->n_steps; i++)
-        *(set->plan->steps[i].kind == WB_HARNESS_TAKE_OFF ? off : mounted) = i;
+    double from[3], seen[3];
+    *x = place[view->axes[0]] / WB_MM;
+    *y = place[view->axes[1]] / WB_MM;
+    if (!view->is_perspective)
+        return;
+    for (int k = 0; k < 3; k++)
+        from[k] = place[k] - view->middle[k];
+    wb_view_project(&camera, from, seen);
+    const double scale = view->distance / (view->distance - seen[2]);
+    *x = scale * seen[0] / WB_MM;
+    *y = scale * seen[1] / WB_MM;
 }
 
-static void add_shape(struct wb_panel *panel, const struct view *view, const char *label,
+/* --- lines --- */
+
+/* A line through places in space; starts zeroed. */
+struct path {
+    size_t n, x_room, y_room;
+    double *x, *y;
+};
+
+static void add_point(struct path *path, double x, double y)
+{
+    path->x = wb_memory_room(path->x, &path->x_room, path->n + 1, sizeof *path->x);
+    path->y = wb_memory_room(path->y, &path->y_room, path->n + 1, sizeof *path->y);
+    path->x[path->n] = x;
+    path->y[path->n++] = y;
+}
+
+static void add_place(struct path *path, const struct view *view, const double place[3])
+{
+    double x, y;
+    project(view, place, &x, &y);
+    add_point(path, x, y);
+}
+
+/* A piece between two places that is not joined to the one before. */
+static void add_piece(struct path *path, const struct view *view, const double from[3],
+                      const double to[3])
+{
+    add_place(path, view, from);
+    add_place(path, view, to);
+    add_point(path, (double)NAN, (double)NAN);
+}
+
+/* Adds the line to a panel and empties it. */
+static void put_path(struct path *path, struct wb_panel *panel, const char *label,
+                     const struct wb_figure_style *style)
+{
+    if (path->n > 0)
+        wb_figure_add_line(panel, label, path->n, path->x, path->y, style);
+    free(path->x);
+    free(path->y);
+    *path = (struct path){0};
+}
+
+static double thickest_wire(const struct wb_harness_plan *plan)
+{
+    double thickest = 0.0;
+    for (int i = 0; i < plan->n_branches; i++)
+        thickest = fmax(thickest, plan->wires[plan->branches[i].wire].diameter);
+    return thickest;
+}
+
+/* Each branch as a line, thicker for thicker wires; `floor`: its height, m, of a shadow; NAN: the
+ * shape itself. */
+static void add_shape(struct wb_panel *panel, const struct view *view,
                       const struct wb_harness_result_set *set,
-                      const struct wb_harness_place *places, const struct wb_figure_style *style)
+                      const struct wb_harness_drawing_shape *shape, double floor)
 {
-    struct wb_memory memory = {0};
-    const size_t most = 2 * (size_t)set->n_places;
-    double *const x = wb_memory_take(&memory, most, sizeof *x);
-    double *const y = wb_memory_take(&memory, most, sizeof *y);
-    size_t n = 0;
-    for (int i = 0; i < set->n_places; i++) {
-        if (i > 0 && places[i].branch != places[i - 1].branch)
-            x[n] = y[n] = (double)NAN, n++;
-        x[n] = places[i].position[view->axes[0]] / WB_MM;
-        y[n++] = places[i].position[view->axes[1]] / WB_MM;
+    const struct wb_harness_plan *const plan = set->plan;
+    struct wb_text label = {0};
+    if (shape->label)
+        wb_text_append_escaped(&label, shape->label);
+    for (int i = 0; i < set->n_places;) {
+        const int branch = shape->places[i].branch;
+        const double diameter = plan->wires[plan->branches[branch].wire].diameter;
+        struct wb_figure_style style = shape->style;
+        struct path path = {0};
+        style.width *= sqrt(diameter / thickest_wire(plan));
+        for (; i < set->n_places && shape->places[i].branch == branch; i++) {
+            const double *const at = shape->places[i].position;
+            const double place[3] = {at[0], at[1], isnan(floor) ? at[2] : floor};
+            add_place(&path, view, place);
+        }
+        put_path(&path, panel, label.length > 0 ? wb_text_string(&label) : NULL, &style);
+        wb_text_release(&label); /* once in the legend */
     }
-    wb_figure_add_line(panel, label, n, x, y, style);
-    wb_memory_release(&memory);
+    wb_text_release(&label);
 }
 
-/* The place of an item in a shape; the nearest along its branch. */
+/* --- items --- */
+
+/* The place in a shape that is nearest along a branch; -1: the root. */
 static const struct wb_harness_place *place_of(const struct wb_harness_result_set *set,
-                                               const struct wb_harness_place *places,
-                                               const struct wb_harness_item *item)
+                                               const struct wb_harness_place *places, int branch,
+                                               double at)
 {
-    const int branch = item->branch < 0 ? 0 : item->branch;
+    const int own = branch < 0 ? 0 : branch;
     int best = 0;
     double nearest = (double)INFINITY;
     for (int i = 0; i < set->n_places; i++) {
-        if (places[i].branch == branch && fabs(places[i].s - item->at) < nearest) {
-            nearest = fabs(places[i].s - item->at);
+        if (places[i].branch == own && fabs(places[i].s - at) < nearest) {
+            nearest = fabs(places[i].s - at);
             best = i;
         }
     }
     return &places[best];
 }
 
-static void add_items(struct wb_panel *panel, const struct view *view,
-                      const struct wb_harness_result_set *set, int step)
+static struct wb_figure_style style_of_item(const struct wb_harness_drawing *drawing, int item)
 {
     static const enum wb_figure_marker markers[] = {
         [WB_HARNESS_ROOT] = WB_MARKER_DIAMOND,
         [WB_HARNESS_CONNECTOR] = WB_MARKER_SQUARE,
         [WB_HARNESS_CLIP] = WB_MARKER_CIRCLE,
     };
-    for (int i = 0; i < set->plan->n_items; i++) {
-        const struct wb_harness_item *const item = &set->plan->items[i];
-        const struct wb_harness_place *const place = place_of(set, set->results[step].places, item);
-        const double x = place->position[view->axes[0]] / WB_MM;
-        const double y = place->position[view->axes[1]] / WB_MM;
-        const struct wb_figure_style style = {
-            .colour = wb_palette_ink(), .marker = markers[item->kind], .marker_size = 4.5};
-        char label[WB_HARNESS_NAME + 2];
+    struct wb_figure_style style = {
+        .colour = wb_palette_ink(),
+        .marker = markers[drawing->set->plan->items[item].kind],
+        .marker_size = 4.5,
+    };
+    if (drawing->step < 0)
+        return style;
+    const struct wb_harness_force *const force = &drawing->set->results[drawing->step].forces[item];
+    if (!force->is_mounted)
+        style.colour = wb_palette_fade(wb_palette_grey(), 0.6);
+    else if (force->exceeds_force || force->exceeds_moment)
+        style.colour = wb_palette_warning();
+    return style;
+}
+
+static void add_items(struct wb_panel *panel, const struct view *view,
+                      const struct wb_harness_drawing *drawing, struct wb_harness_labels *labels)
+{
+    const struct wb_harness_result_set *const set = drawing->set;
+    const struct wb_harness_plan *const plan = set->plan;
+    const struct wb_harness_place *const places = drawing->shapes[drawing->n_shapes - 1].places;
+    double x, y;
+    for (int i = 0; i < plan->n_items; i++) {
+        const struct wb_harness_item *const item = &plan->items[i];
+        const struct wb_figure_style style = style_of_item(drawing, i);
+        project(view, place_of(set, places, item->branch, item->at)->position, &x, &y);
         wb_figure_add_line(panel, NULL, 1, &x, &y, &style);
-        snprintf(label, sizeof label, " %s", item->name);
-        wb_figure_add_text(panel, x, y, -1, label);
+        wb_harness_labels_add_mark(labels, x, y);
+    }
+    for (int i = 0; i < plan->n_items; i++) {
+        const struct wb_harness_item *const item = &plan->items[i];
+        project(view, place_of(set, places, item->branch, item->at)->position, &x, &y);
+        wb_harness_labels_put(labels, panel, x, y, item->name, false);
+    }
+    for (int i = 0; drawing->names_branches && i < plan->n_branches; i++) {
+        project(view, place_of(set, places, i, 0.5 * plan->branches[i].length)->position, &x, &y);
+        wb_harness_labels_put(labels, panel, x, y, plan->branches[i].name, true);
     }
 }
 
-static void add_view(struct wb_figure *figure, const struct view *view,
-                     const struct wb_harness_result_set *set, bool has_legend)
+static void add_targets(struct wb_panel *panel, const struct view *view,
+                        const struct wb_harness_plan *plan, bool has_legend,
+                        struct wb_harness_labels *labels)
 {
-    const struct wb_figure_style natural = {
-        .colour = wb_palette_grey(), .width = 0.8, .dash = WB_DASH_DASHED};
-    const struct wb_figure_style mounted = {.colour = wb_palette_wire(0), .width = 1.6};
-    const struct wb_figure_style remaining = {.colour = wb_palette_warning(), .width = 1.1};
-    struct wb_panel *const panel = wb_figure_add_panel(figure);
-    int step, off;
-    find_steps(set, &step, &off);
-    wb_figure_set_title(panel, view->title);
-    wb_figure_set_axes(panel, view->labels[0], view->labels[1]);
-    wb_figure_set_equal_aspect(panel);
-    add_shape(panel, view, has_legend ? "free of stress" : NULL, set, set->natural, &natural);
-    if (off >= 0)
-        add_shape(panel, view, has_legend ? "taken off" : NULL, set, set->results[off].places,
-                  &remaining);
-    if (step < 0)
+    const struct wb_figure_style style = {
+        .colour = wb_palette_warning(), .marker = WB_MARKER_RING, .marker_size = 4.5};
+    struct path path = {0};
+    for (int i = 0; i < plan->n_steps; i++) {
+        if (plan->steps[i].kind != WB_HARNESS_MOUNT)
+            continue;
+        add_place(&path, view, plan->steps[i].position);
+        wb_harness_labels_add_mark(labels, path.x[path.n - 1], path.y[path.n - 1]);
+    }
+    put_path(&path, panel, has_legend ? "mounted at" : NULL, &style);
+}
+
+/* The line between the first and the last shape at the place that is farthest. */
+static void add_distance(struct wb_panel *panel, const struct view *view,
+                         const struct wb_harness_drawing *drawing, struct wb_harness_labels *labels)
+{
+    static const double least_shown = 0.6; /* part of it that a view with the number shows */
+    const struct wb_figure_style style = {
+        .colour = wb_palette_ink(), .width = 0.8, .dash = WB_DASH_DOTTED};
+    const double *const from = drawing->shapes[0].places[drawing->farthest].position;
+    const double *const to =
+        drawing->shapes[drawing->n_shapes - 1].places[drawing->farthest].position;
+    const double distance = wb_vec3_distance(from, to) / WB_MM;
+    struct path path = {0};
+    double middle[3], x, y;
+    char text[48];
+    add_piece(&path, view, from, to);
+    const double shown = hypot(path.x[1] - path.x[0], path.y[1] - path.y[0]);
+    put_path(&path, panel, NULL, &style);
+    if (shown < least_shown * distance)
         return;
-    add_shape(panel, view, has_legend ? set->plan->steps[step].name : NULL, set,
-              set->results[step].places, &mounted);
-    add_items(panel, view, set, step);
+    for (int k = 0; k < 3; k++)
+        middle[k] = 0.5 * (from[k] + to[k]);
+    project(view, middle, &x, &y);
+    snprintf(text, sizeof text, "%.*f mm",
+             distance < 10.0    ? 2
+             : distance < 100.0 ? 1
+                                : 0,
+             distance);
+    wb_harness_labels_put(labels, panel, x, y, text, false);
+}
+
+/* --- the floor of a perspective --- */
+
+static void widen(double low[3], double high[3], const double place[3])
+{
+    for (int k = 0; k < 3; k++) {
+        low[k] = fmin(low[k], place[k]);
+        high[k] = fmax(high[k], place[k]);
+    }
+}
+
+static void find_box(const struct wb_harness_drawing *drawing, double low[3], double high[3])
+{
+    const struct wb_harness_plan *const plan = drawing->set->plan;
+    for (int k = 0; k < 3; k++) {
+        low[k] = (double)INFINITY;
+        high[k] = -(double)INFINITY;
+    }
+    for (int s = 0; s < drawing->n_shapes; s++) {
+        for (int i = 0; i < drawing->set->n_places; i++)
+            widen(low, high, drawing->shapes[s].places[i].position);
+    }
+    for (int i = 0; drawing->has_targets && i < plan->n_steps; i++) {
+        if (plan->steps[i].kind == WB_HARNESS_MOUNT)
+            widen(low, high, plan->steps[i].position);
+    }
+}
+
+/* 1, 2 or 5 times a power of ten, so that a length has three to eight of them. */
+static double grid_step(double length)
+{
+    const double power = pow(10.0, floor(log10(length / 3.0)));
+    const double part = length / 3.0 / power;
+    return power * (part < 2.0 ? 1.0 : part < 5.0 ? 2.0 : 5.0);
+}
+
+static void add_floor(struct wb_panel *panel, const struct view *view,
+                      struct wb_harness_labels *labels)
+{
+    const struct wb_figure_style style = {.colour = wb_palette_rule(), .width = 0.5};
+    const double *const low = view->low, *const high = view->high;
+    const double step = view->grid;
+    struct path path = {0};
+    double x, y;
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; low[k] + i * step < high[k] + 0.5 * step; i++) {
+            const double at = low[k] + i * step;
+            double from[3] = {low[0], low[1], low[2]}, to[3] = {high[0], high[1], low[2]};
+            from[k] = to[k] = at;
+            add_piece(&path, view, from, to);
+        }
+    }
+    put_path(&path, panel, NULL, &style);
+    const double x_end[3] = {high[0], low[1], low[2]}, y_end[3] = {high[0], high[1], low[2]};
+    project(view, x_end, &x, &y);
+    wb_harness_labels_put(labels, panel, x, y, "x", true);
+    project(view, y_end, &x, &y);
+    wb_harness_labels_put(labels, panel, x, y, "y", true);
+}
+
+/* Vertical lines from the items down to the floor. */
+static void add_drops(struct wb_panel *panel, const struct view *view,
+                      const struct wb_harness_drawing *drawing)
+{
+    const struct wb_figure_style style = {.colour = wb_palette_rule(), .width = 0.7};
+    const struct wb_harness_place *const places = drawing->shapes[drawing->n_shapes - 1].places;
+    struct path path = {0};
+    for (int i = 0; i < drawing->set->plan->n_items; i++) {
+        const struct wb_harness_item *const item = &drawing->set->plan->items[i];
+        const double *const at = place_of(drawing->set, places, item->branch, item->at)->position;
+        const double below[3] = {at[0], at[1], view->low[2]};
+        add_piece(&path, view, at, below);
+    }
+    put_path(&path, panel, NULL, &style);
+}
+
+/* --- panels --- */
+
+/* The range of a panel around all that is shown, so that a unit is as long on both axes and the
+ * drawing is in the middle; and the points that names should not cover. */
+static void fit_panel(const struct view *view, const struct wb_harness_drawing *drawing,
+                      struct wb_harness_labels *labels)
+{
+    static const double margin[2] = {20.0, 13.0}; /* points, for names */
+    struct wb_harness_labels_box box = {{(double)INFINITY, (double)INFINITY},
+                                        {-(double)INFINITY, -(double)INFINITY}};
+    for (int corner = 0; corner < 8; corner++) {
+        double place[3], at[2];
+        for (int k = 0; k < 3; k++)
+            place[k] = (corner >> k) % 2 ? view->high[k] : view->low[k];
+        project(view, place, &at[0], &at[1]);
+        for (int k = 0; k < 2; k++) {
+            box.low[k] = fmin(box.low[k], at[k]);
+            box.high[k] = fmax(box.high[k], at[k]);
+        }
+    }
+    const double room[2] = {view->width, view->height};
+    labels->scale = 1e-3;
+    for (int k = 0; k < 2; k++)
+        labels->scale =
+            fmax(labels->scale, (box.high[k] - box.low[k]) / fmax(room[k] - 2.0 * margin[k], 20.0));
+    for (int k = 0; k < 2; k++) {
+        const double middle = 0.5 * (box.low[k] + box.high[k]);
+        labels->panel.low[k] = middle - 0.5 * labels->scale * room[k];
+        labels->panel.high[k] = middle + 0.5 * labels->scale * room[k];
+    }
+    for (int s = 0; s < drawing->n_shapes; s++) {
+        for (int i = 0; i < drawing->set->n_places; i++) {
+            double x, y;
+            project(view, drawing->shapes[s].places[i].position, &x, &y);
+            wb_harness_labels_add_point(labels, x, y);
+        }
+    }
+}
+
+static void add_panel(struct wb_panel *panel, const struct view *view,
+                      const struct wb_harness_drawing *drawing, bool has_legend)
+{
+    struct wb_harness_labels labels = {0};
+    fit_panel(view, drawing, &labels);
+    wb_figure_set_title(panel, view->title);
+    wb_figure_set_equal_aspect(panel);
+    wb_figure_set_x_range(panel, labels.panel.low[0], labels.panel.high[0]);
+    wb_figure_set_y_range(panel, labels.panel.low[1], labels.panel.high[1]);
+    if (view->is_perspective) {
+        struct wb_harness_drawing_shape shadow = drawing->shapes[drawing->n_shapes - 1];
+        shadow.label = NULL;
+        shadow.style = (struct wb_figure_style){.colour = wb_palette_rule(), .width = 1.8};
+        wb_figure_hide_axes(panel);
+        add_floor(panel, view, &labels);
+        add_shape(panel, view, drawing->set, &shadow, view->low[2]);
+        add_drops(panel, view, drawing);
+    } else {
+        wb_figure_set_axes(panel, view->labels[0], view->labels[1]);
+    }
+    for (int i = 0; i < drawing->n_shapes; i++) {
+        struct wb_harness_drawing_shape shape = drawing->shapes[i];
+        shape.label = has_legend ? shape.label : NULL;
+        add_shape(panel, view, drawing->set, &shape, (double)NAN);
+    }
+    if (drawing->has_targets)
+        add_targets(panel, view, drawing->set->plan, has_legend, &labels);
+    add_items(panel, view, drawing, &labels);
+    if (drawing->farthest >= 0)
+        add_distance(panel, view, drawing, &labels);
+    wb_harness_labels_release(&labels);
+}
+
+/* Widths of the three plots, points: a unit is as long in all, but none is very narrow. */
+static void share_width(const struct wb_harness_drawing *drawing, double width,
+                        double widths[VIEWS])
+{
+    static const double narrowest = 0.45; /* of the widest */
+    double low[3], high[3], sum = 0.0, widest = 1e-9;
+    find_box(drawing, low, high);
+    for (int i = 0; i < VIEWS; i++) {
+        const int k = parallel_views[i].axes[0];
+        widest = fmax(widest, high[k] - low[k]);
+    }
+    for (int i = 0; i < VIEWS; i++) {
+        const int k = parallel_views[i].axes[0];
+        widths[i] = fmax(high[k] - low[k], narrowest * widest);
+        sum += widths[i];
+    }
+    for (int i = 0; i < VIEWS; i++)
+        widths[i] *= (width - VIEWS * BESIDE - (VIEWS - 1) * GAP) / sum;
+}
+
+double wb_harness_drawing_height(const struct wb_harness_drawing *drawing, double width)
+{
+    double low[3], high[3], widths[VIEWS], height = 0.25 * width;
+    find_box(drawing, low, high);
+    share_width(drawing, width, widths);
+    for (int i = 0; i < VIEWS; i++) {
+        const int *const k = parallel_views[i].axes;
+        height = fmax(height, ABOVE + widths[i] * (high[k[1]] - low[k[1]]) /
+                                          fmax(high[k[0]] - low[k[0]], 1e-9));
+    }
+    return fmin(height, 0.45 * width);
+}
+
+void wb_harness_drawing_add_views(const struct wb_harness_drawing *drawing,
+                                  struct wb_figure *figure, double width)
+{
+    double widths[VIEWS];
+    share_width(drawing, width, widths);
+    for (int i = 0; i < VIEWS; i++) {
+        struct wb_panel *const panel = wb_figure_add_panel(figure);
+        struct view view = parallel_views[i];
+        view.width = widths[i];
+        view.height = wb_figure_height(figure) - ABOVE;
+        find_box(drawing, view.low, view.high);
+        wb_figure_set_width(panel, widths[i] + BESIDE);
+        add_panel(panel, &view, drawing, false);
+    }
+}
+
+void wb_harness_drawing_add_perspective(const struct wb_harness_drawing *drawing,
+                                        struct wb_figure *figure, double width)
+{
+    struct view view = {.is_perspective = true, .width = width - 4.0};
+    double diagonal[3];
+    char title[80];
+    find_box(drawing, view.low, view.high);
+    view.height = wb_figure_height(figure) - 28.0;
+    view.grid = grid_step(fmax(view.high[0] - view.low[0], view.high[1] - view.low[1]));
+    for (int k = 0; k < 2; k++) {
+        const double first = floor(view.low[k] / view.grid);
+        view.low[k] = view.grid * first;
+        view.high[k] = view.grid * fmax(ceil(view.high[k] / view.grid), first + 1.0);
+    }
+    for (int k = 0; k < 3; k++) {
+        view.middle[k] = 0.5 * (view.low[k] + view.high[k]);
+        diagonal[k] = view.high[k] - view.low[k];
+    }
+    view.distance = 0.5 * eye_distance * wb_vec3_length(diagonal);
+    snprintf(title, sizeof title, "Perspective, grid of %g mm", view.grid / WB_MM);
+    view.title = title;
+    struct wb_panel *const panel = wb_figure_add_panel(figure);
+    wb_figure_set_width(panel, width);
+    add_panel(panel, &view, drawing, true);
+}
+
+/* --- what is drawn --- */
+
+static const struct wb_figure_style dashed = {
+    .colour = {0.45, 0.45, 0.45, 1.0}, .width = 0.9, .dash = WB_DASH_DASHED};
+
+static struct wb_harness_drawing_shape shape_of(const struct wb_harness_place *places,
+                                                const char *label, struct wb_figure_style style)
+{
+    return (struct wb_harness_drawing_shape){places, label, style};
+}
+
+static struct wb_figure_style solid(struct wb_colour colour)
+{
+    return (struct wb_figure_style){.colour = colour, .width = 2.0};
+}
+
+void wb_harness_drawing_of_natural(struct wb_harness_drawing *drawing,
+                                   const struct wb_harness_result_set *set)
+{
+    *drawing = (struct wb_harness_drawing){
+        .set = set,
+        .n_shapes = 1,
+        .shapes = {shape_of(set->natural, "free of stress", solid(wb_palette_wire(0)))},
+        .step = -1,
+        .names_branches = true,
+        .has_targets = true,
+        .farthest = -1,
+    };
+}
+
+void wb_harness_drawing_of_step(struct wb_harness_drawing *drawing,
+                                const struct wb_harness_result_set *set, int step)
+{
+    const bool is_first = step == 0;
+    *drawing = (struct wb_harness_drawing){
+        .set = set,
+        .n_shapes = 2,
+        .shapes = {shape_of(is_first ? set->natural : set->results[step - 1].places,
+                            is_first ? "free of stress" : "before", dashed),
+                   shape_of(set->results[step].places, "after", solid(wb_palette_wire(0)))},
+        .step = step,
+        .farthest = -1,
+    };
+}
+
+void wb_harness_drawing_of_steps(struct wb_harness_drawing *drawing,
+                                 const struct wb_harness_result_set *set)
+{
+    int off = -1, mounted = -1;
+    for (int i = 0; i < set->n_steps; i++)
+        *(set->plan->steps[i].kind == WB_HARNESS_TAKE_OFF ? &off : &mounted) = i;
+    *drawing = (struct wb_harness_drawing){
+        .set = set,
+        .n_shapes = 1,
+        .shapes = {shape_of(set->natural, "free of stress", dashed)},
+        .step = mounted,
+        .farthest = -1,
+    };
+    if (off >= 0) {
+        struct wb_figure_style style = solid(wb_palette_warning());
+        style.width = 1.2;
+        drawing->shapes[drawing->n_shapes++] =
+            shape_of(set->results[off].places, "taken off", style);
+    }
+    if (mounted >= 0)
+        drawing->shapes[drawing->n_shapes++] =
+            shape_of(set->results[mounted].places, set->plan->steps[mounted].name,
+                     solid(wb_palette_wire(0)));
+}
+
+void wb_harness_drawing_of_residual(struct wb_harness_drawing *drawing,
+                                    const struct wb_harness_result_set *set, int step)
+{
+    *drawing = (struct wb_harness_drawing){
+        .set = set,
+        .n_shapes = 2,
+        .shapes = {shape_of(set->natural, "free of stress before", dashed),
+                   shape_of(set->results[step].places, "taken off", solid(wb_palette_warning()))},
+        .step = -1,
+        .farthest = wb_harness_found_farthest(set, step),
+    };
+}
+
+/* --- figures of their own --- */
+
+enum wb_status wb_harness_drawing_create(const struct wb_harness_drawing *drawing,
+                                         const char *footer, struct wb_figure **figure)
+{
+    const double views = WIDTH - PERSPECTIVE - GAP;
+    WB_TRY(wb_figure_create(figure, "harness", WIDTH, wb_harness_drawing_height(drawing, views)));
+    wb_harness_drawing_add_views(drawing, *figure, views);
+    wb_harness_drawing_add_perspective(drawing, *figure, PERSPECTIVE);
+    wb_figure_set_footer(*figure, footer);
+    return WB_OK;
 }
 
 enum wb_status wb_harness_drawing_write(const struct wb_harness_result_set *set, const char *path)
 {
+    struct wb_harness_drawing drawing;
     struct wb_figure *figure;
     char footer[160];
-    WB_TRY(wb_figure_create(&figure, "harness", WIDTH, HEIGHT));
-    for (int i = 0; i < VIEWS; i++)
-        add_view(figure, &views[i], set, i == 0);
+    wb_harness_drawing_of_steps(&drawing, set);
     snprintf(footer, sizeof footer, "%s: simulation, %s", set->plan->name,
              set->settings.is_elastic ? "elastic" : "elastoplastic");
-    wb_figure_set_footer(figure, footer);
+    WB_TRY(wb_harness_drawing_create(&drawing, footer, &figure));
     const enum wb_status status = wb_figure_write_file(figure, PNG_SCALE, path);
     wb_figure_destroy(figure);
     return status;

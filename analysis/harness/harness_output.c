@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "analysis/dataset/csv_table.h"
-#include "analysis/harness/harness_output_private.h"
+#include "analysis/harness/harness_found.h"
 #include "analysis/keys/common.h"
 #include "analysis/keys/row.h"
 #include "base/file.h"
@@ -18,16 +18,6 @@
 #define SNAP(member) WB_AT(struct wb_harness_snap, member)
 #define WIRE(member) WB_AT(struct wb_harness_wire, member)
 #define PLAN(member) WB_AT(struct wb_harness_plan, member)
-
-/* Part of a force by which it must differ; forces below this part of the largest one on the way are
- * as good as zero. */
-static const double twist_sensitive = 0.1, as_zero = 1e-3;
-
-bool wb_harness_output_is_twist_sensitive(const struct wb_harness_force *force)
-{
-    return fabs(force->soft_force - force->size) >
-           twist_sensitive * fmax(force->size, as_zero * force->largest);
-}
 
 /* --- harness.json --- */
 
@@ -113,9 +103,7 @@ static const struct wb_key residual_rows[] = {
 };
 static WB_KEYS(residual, "harness_residual", "The shape of the harness after it was taken off.");
 
-static const struct wb_key wb_harness_output_rows[] = {
-    {"tool", OBJECT, "the program", &wb_common_tool_keys},
-    {"kind", TEXT, "kind of file", .choices = "harness"},
+static const struct wb_key wb_harness_output_result_rows[] = {
     {"name", PLAN(name), "name of the harness"},
     {"title", PLAN(title) | OPTIONAL, "title"},
     {"file_sha256", PLAN(sha256), "checksum of the harness file"},
@@ -126,6 +114,13 @@ static const struct wb_key wb_harness_output_rows[] = {
     {"wires", WB_POINTER(struct wb_harness_plan, wires, n_wires), "wires", &wire_keys},
     {"steps", OBJECT | LIST, "steps", &wb_harness_output_step_keys},
     {"residual_shape", OBJECT | OPTIONAL, "shape after the harness was taken off", &residual_keys},
+};
+WB_KEYS(wb_harness_output_result, "harness_result", "A harness that was computed.");
+
+static const struct wb_key wb_harness_output_rows[] = {
+    {"tool", OBJECT, "the program", &wb_common_tool_keys},
+    {"kind", TEXT, "kind of file", .choices = "harness"},
+    {.of = &wb_harness_output_result_keys},
 };
 WB_KEYS(wb_harness_output, "harness", "`wirebench solve harness`.");
 
@@ -187,7 +182,7 @@ void wb_harness_output_put_step(struct wb_json *object, const struct wb_harness_
         WB_PUT(item, &force_keys, struct wb_harness_force, force);
         if (isfinite(force->soft_force))
             wb_json_set_boolean(item, "twist_sensitive",
-                                wb_harness_output_is_twist_sensitive(force));
+                                wb_harness_found_is_twist_sensitive(force));
     }
     struct wb_json *const branches = wb_json_set_array(object, "branches");
     for (int i = 0; i < plan->n_branches; i++) {
@@ -197,19 +192,12 @@ void wb_harness_output_put_step(struct wb_json *object, const struct wb_harness_
     }
 }
 
-/* The last step, if the harness was taken off; -1: it was not. */
-static int taken_off(const struct wb_harness_result_set *set)
-{
-    const int last = set->n_steps - 1;
-    return set->converged && set->plan->steps[last].kind == WB_HARNESS_TAKE_OFF ? last : -1;
-}
-
-void wb_harness_output_put(struct wb_json *object, const struct wb_harness_result_set *set)
+void wb_harness_output_put_result(struct wb_json *object, const struct wb_harness_result_set *set)
 {
     const struct wb_harness_plan *const plan = set->plan;
-    wb_keys_put_tool(object, "wirebench solve");
-    wb_json_set_text(object, "kind", "harness");
-    WB_PUT(object, &wb_harness_output_keys, struct wb_harness_plan, plan);
+    struct wb_harness_found found;
+    wb_harness_found_collect(&found, set);
+    WB_PUT(object, &wb_harness_output_result_keys, struct wb_harness_plan, plan);
     wb_json_set_text(object, "law", set->settings.is_elastic ? "elastic" : "elastoplastic");
     wb_json_set_integer(object, "elements", set->n_elements);
     wb_json_set_number(object, "weight_N", set->weight);
@@ -219,14 +207,18 @@ void wb_harness_output_put(struct wb_json *object, const struct wb_harness_resul
     for (int i = 0; i < set->n_steps; i++)
         wb_harness_output_put_step(wb_json_append_object(steps), plan, plan->steps[i].name,
                                    &set->results[i]);
-    const int last = taken_off(set);
-    if (last >= 0) {
-        int branch;
+    if (found.is_taken_off) {
         struct wb_json *const residual = wb_json_set_object(object, "residual_shape");
-        wb_json_set_number(residual, "distance_mm",
-                           wb_harness_run_distance(set, last, &branch) / WB_MM);
-        wb_json_set_text(residual, "branch", branch_name(plan, branch));
+        wb_json_set_number(residual, "distance_mm", found.residual.value / WB_MM);
+        wb_json_set_text(residual, "branch", branch_name(plan, found.residual.of));
     }
+}
+
+void wb_harness_output_put(struct wb_json *object, const struct wb_harness_result_set *set)
+{
+    wb_keys_put_tool(object, "wirebench solve");
+    wb_json_set_text(object, "kind", "harness");
+    wb_harness_output_put_result(object, set);
 }
 
 /* --- tables --- */
@@ -372,7 +364,7 @@ void wb_harness_output_append_table(struct wb_text *text, const struct wb_harnes
                            plan->items[k].name, chopped(f->size), chopped(f->moment_size / WB_NMM),
                            chopped(f->largest), chopped(f->largest_moment / WB_NMM),
                            f->exceeds_force || f->exceeds_moment ? "  LIMIT EXCEEDED" : "",
-                           wb_harness_output_is_twist_sensitive(f) ? "  depends on GJ" : "");
+                           wb_harness_found_is_twist_sensitive(f) ? "  depends on GJ" : "");
         }
         for (int s = 0; s < step->n_snaps; s++)
             wb_text_append(text, "      snap at %.3g of the step: %s moves by %.3g mm\n",
@@ -381,43 +373,16 @@ void wb_harness_output_append_table(struct wb_text *text, const struct wb_harnes
     }
 }
 
-bool wb_harness_output_exceeds(const struct wb_harness_result_set *set)
-{
-    for (int i = 0; i < set->n_steps; i++) {
-        for (int k = 0; k < set->plan->n_items; k++) {
-            if (set->results[i].forces[k].exceeds_force || set->results[i].forces[k].exceeds_moment)
-                return true;
-        }
-        for (int b = 0; b < set->plan->n_branches; b++) {
-            if (set->results[i].branches[b].exceeds_radius)
-                return true;
-        }
-    }
-    return false;
-}
-
 void wb_harness_output_append_finding(struct wb_text *text, const struct wb_harness_result_set *set)
 {
     const struct wb_harness_plan *const plan = set->plan;
-    double largest = 0.0;
-    int step = 0, item = 0;
-    for (int i = 0; i < set->n_steps; i++) {
-        for (int k = 0; k < plan->n_items; k++) {
-            if (set->results[i].forces[k].largest > largest) {
-                largest = set->results[i].forces[k].largest;
-                step = i;
-                item = k;
-            }
-        }
-    }
+    struct wb_harness_found found;
+    wb_harness_found_collect(&found, set);
     wb_text_append(text, "%s (simulation, %s): largest force %.3g N, on %s in step %d (%s)",
-                   plan->name, set->settings.is_elastic ? "elastic" : "elastoplastic", largest,
-                   plan->items[item].name, step + 1, plan->steps[step].name);
-    const int last = taken_off(set);
-    if (last >= 0) {
-        int branch;
-        const double distance = wb_harness_run_distance(set, last, &branch);
-        wb_text_append(text, "; taken off, it keeps a shape up to %.3g mm from that before (%s)",
-                       distance / WB_MM, plan->branches[branch].name);
-    }
+                   plan->name, set->settings.is_elastic ? "elastic" : "elastoplastic",
+                   found.force.value, plan->items[found.force.of].name, found.force.step + 1,
+                   plan->steps[found.force.step].name);
+    if (found.is_taken_off)
+        wb_text_append(text, "; taken off, it keeps a shape up to %.4g mm from that before (%s)",
+                       found.residual.value / WB_MM, plan->branches[found.residual.of].name);
 }

@@ -9,10 +9,14 @@
 #include "base/status.h"
 #include "base/text.h"
 
-extern const struct wb_keys wb_harness_output_keys, wb_harness_output_step_keys;
+/* Keys of harness.json, those that describe a result, which reports have, too, and those of a step.
+ */
+extern const struct wb_keys wb_harness_output_keys, wb_harness_output_result_keys,
+    wb_harness_output_step_keys;
 
-/* Members of harness.json into an object. */
+/* Members of harness.json into an object; the same without program and kind of file. */
 void wb_harness_output_put(struct wb_json *object, const struct wb_harness_result_set *set);
+void wb_harness_output_put_result(struct wb_json *object, const struct wb_harness_result_set *set);
 
 /* The same of one step: a member of its `steps`. */
 void wb_harness_output_put_step(struct wb_json *object, const struct wb_harness_plan *plan,
@@ -28,8 +32,5 @@ void wb_harness_output_append_table(struct wb_text *text, const struct wb_harnes
 /* One sentence: residual shape or largest force, and limits that are exceeded. */
 void wb_harness_output_append_finding(struct wb_text *text,
                                       const struct wb_harness_result_set *set);
-
-/* Whether a limit of the file is exceeded. */
-bool wb_harness_output_exceeds(const struct wb_harness_result_set *set);
 
 #endif

@@ -562,18 +562,3 @@ void wb_harness_run_release(struct wb_harness_result_set *set)
     free(set->memory);
     *set = (struct wb_harness_result_set){.plan = NULL};
 }
-
-double wb_harness_run_distance(const struct wb_harness_result_set *set, int step, int *branch)
-{
-    double largest = 0.0;
-    *branch = 0;
-    for (int i = 0; i < set->n_places; i++) {
-        const double way =
-            wb_vec3_distance(set->natural[i].position, set->results[step].places[i].position);
-        if (way > largest) {
-            largest = way;
-            *branch = set->natural[i].branch;
-        }
-    }
-    return largest;
-}

@@ -121,7 +121,4 @@ void wb_harness_run_release(struct wb_harness_result_set *set); /* accepts a zer
 double wb_harness_run_torsion(const struct wb_harness_plan *plan, int wire,
                               const struct wb_harness_settings *settings);
 
-/* Largest distance between the shape after a step and the stress-free shape, m, and its branch. */
-double wb_harness_run_distance(const struct wb_harness_result_set *set, int step, int *branch);
-
 #endif

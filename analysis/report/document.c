@@ -124,6 +124,11 @@ void wb_document_new_page(struct wb_document *document)
     add_block(document, WB_BLOCK_NEW_PAGE, NULL);
 }
 
+void wb_document_need_room(struct wb_document *document, double points)
+{
+    add_block(document, WB_BLOCK_ROOM, NULL)->room = points;
+}
+
 static char *number_caption(struct wb_document *document, const char *caption)
 {
     struct wb_text text = {0};

@@ -27,8 +27,9 @@ enum wb_document_kind {
     WB_BLOCK_ITEM,   /* of a list */
     WB_BLOCK_CODE,   /* plain text, not markup */
     WB_BLOCK_TABLE,
-    WB_BLOCK_FIGURES, /* one, or two side by side */
-    WB_BLOCK_NEW_PAGE /* where there are pages, and this one is at least half full */
+    WB_BLOCK_FIGURES,  /* one, or two side by side */
+    WB_BLOCK_NEW_PAGE, /* where there are pages, and this one is at least half full */
+    WB_BLOCK_ROOM      /* the same, and less than `room` is left on this one */
 };
 
 struct wb_document_column {
@@ -58,6 +59,7 @@ struct wb_document_block {
     enum wb_document_kind kind;
     enum wb_document_tone tone;
     int level;    /* of a heading: 1, 2 */
+    double room;  /* points */
     char *text;   /* owned */
     char *anchor; /* of a heading; owned */
     struct wb_document_table *table;
@@ -97,6 +99,8 @@ void wb_document_notice(struct wb_document *document, enum wb_document_tone tone
 void wb_document_item(struct wb_document *document, enum wb_document_tone tone, const char *markup);
 void wb_document_code(struct wb_document *document, const char *text);
 void wb_document_new_page(struct wb_document *document);
+/* Keeps what follows together: a new page unless so many points are left on this one. */
+void wb_document_need_room(struct wb_document *document, double points);
 
 /* Captions get "Figure N." before them. The second figure may be NULL. */
 void wb_document_figures(struct wb_document *document, const struct wb_figure *first,

@@ -178,6 +178,7 @@ static enum wb_status put_block(struct wb_text *html, const struct wb_document_b
     case WB_BLOCK_FIGURES:
         return put_figures(html, block);
     case WB_BLOCK_NEW_PAGE:
+    case WB_BLOCK_ROOM:
         break;
     }
     return WB_OK;

@@ -583,6 +583,9 @@ static void walk(struct pen *pen)
         case WB_BLOCK_NEW_PAGE:
             new_chapter(pen);
             break;
+        case WB_BLOCK_ROOM:
+            need(pen, block->room);
+            break;
         }
     }
     end_page(pen);

@@ -1,15 +1,20 @@
 /* Keys of report.json, and of manifest.json. */
 #include "analysis/report/bench/recordings_kind.h"
 #include "analysis/report/bundles/bundles_kind.h"
+#include "analysis/report/harnesses/harnesses_kind.h"
 #include "analysis/report/machines/machines_kind.h"
 #include "analysis/report/numbers.h"
 #include "analysis/report/predictions/predictions_kind.h"
 #include "analysis/report/wires/wires_kind.h"
 #include "analysis/schema/tables.h"
 
-static const struct wb_keys *const kinds[] = {&wb_recordings_json_keys, &wb_wires_json_keys,
-                                              &wb_bundles_json_keys,    &wb_predictions_kind_keys,
-                                              &wb_machines_kind_keys,   NULL};
+static const struct wb_keys *const kinds[] = {&wb_recordings_json_keys,
+                                              &wb_wires_json_keys,
+                                              &wb_bundles_json_keys,
+                                              &wb_predictions_kind_keys,
+                                              &wb_machines_kind_keys,
+                                              &wb_harnesses_kind_keys,
+                                              NULL};
 const struct wb_keys wb_schema_report = {
     "report", "A report; its keys depend on the kind of the campaign.", .alternatives = kinds};
 

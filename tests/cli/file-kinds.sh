@@ -64,6 +64,8 @@ kind recording "$root/recordings/type1-L85-1.wbr.zst"
 kind card "$root"/docs/cards/type1.{abaqus.inp,calculix.inp,csv,json,mujoco.xml}
 kind figure "$root"/docs/images/*.png
 
+printf 'kind: harness\ntitle: T\nharness: small\n' >h.yaml
+kind campaign h.yaml
 printf 'series: s\nspecimen: like.yaml\nspecimens: 3\n' >series.yaml
 kind series series.yaml
 printf 'wire: w\nsample: 1\nconstituent: conductor\narea_mm2: 1\n' >piece.yaml

@@ -1,5 +1,5 @@
 #!/bin/bash
-# `wirebench solve harness`: the shipped harness on the terminal, as JSON and as files, and what goes
+# `wirebench solve harness` and `quicklook`: the shipped harness on the terminal, as JSON and as files, and what goes
 # wrong. Usage: harness.sh WIREBENCH SOURCE_ROOT
 . "$2/tests/cli/reports.sh"
 root=$2
@@ -142,4 +142,26 @@ echo '{"state": true}' | "$wirebench" solve harness small --follow >/dev/full 2>
 [ $? -eq 1 ] && grep -q 'cannot be written' said || fail "a full output: $(cat said)"
 ends_with 2 '--follow writes no files' solve harness small --follow -o follow
 ends_with 2 '--follow' solve bundle 7-type3 --follow
+# A quick look: the shape, without a step.
+"$wirebench" quicklook "$root/fixtures/harnesses/small.yaml" -o look >said 2>warned || fail "quicklook ended with $?"
+[ ! -s warned ] || fail "quicklook: $(cat warned)"
+for part in 'stress-free shape' 'C1           clip on B1 at 200 mm' ' 2  mount C1 at (190, 0, 30) mm' 'written to look'; do
+    grep -qF "$part" said || fail "quicklook: '$part' is not said: $(cat said)"
+done
+[ "$(ls look)" = "$(printf 'shape.pdf\nshape.png\nshape.svg\nsummary.txt')" ] || fail "quicklook: $(ls look)"
+grep -q 'small: stress-free shape' look/shape.svg || fail 'the quick look does not say what it is'
+"$wirebench" quicklook fixtures/harnesses/small.yaml -o look --force --json >said || fail 'quicklook --json'
+python3 - said <<'PYTHON' || fail 'the quick look as JSON'
+import json, sys
+look = json.load(open(sys.argv[1]))
+assert look["length_mm"] == 750 and len(look["steps"]) == 7
+assert [i["name"] for i in look["items"]] == ["R", "K1", "K2", "C1"]
+assert look["low_mm"][0] == 0 and abs(look["high_mm"][1] - 125) < 1e-9
+PYTHON
+ends_with 1 --force quicklook fixtures/harnesses/small.yaml -o look
+ends_with 2 'figures go: -o DIR' quicklook fixtures/harnesses/small.yaml
+sed 's/length_mm: 200/length_mm: long/' "$root/fixtures/harnesses/small.yaml" >wrong.yaml
+ends_with 1 'wrong.yaml:11: length_mm' quicklook wrong.yaml -o wrong
+ends_with 1 'wrong.yaml:11: length_mm' solve harness wrong.yaml
+[ ! -e wrong ] || fail 'a rejected file leaves a folder'
 finish 'solve harness'

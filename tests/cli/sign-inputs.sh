@@ -1,7 +1,8 @@
 #!/bin/bash
 # `report --check` notices a byte that changed in any file that a signed report was made from: of
-# recordings, testing machines, wires, bundles and predictions, all small ones.
-# Usage: sign-inputs.sh WIREBENCH SOURCE_ROOT KIND... (wires, machines, bundles, predictions, recordings)
+# recordings, testing machines, wires, bundles, predictions and harnesses, all small ones.
+# Usage: sign-inputs.sh WIREBENCH SOURCE_ROOT KIND...
+# (wires, machines, bundles, predictions, harnesses, recordings)
 . "$2/tests/cli/reports.sh"
 command -v gpg >/dev/null || {
     echo 'gpg is not installed'
@@ -144,6 +145,13 @@ YAML
         test/{dataset.json,force_deflection.csv,shape.csv}
 }
 
+harnesses() { # with a wire of its own
+    cp "$source/docs/cards/type1.yaml" lead.yaml
+    sed 's/wire: type3/wire: lead.yaml/' "$source/fixtures/harnesses/small.yaml" >small.yaml
+    printf 'kind: harness\ntitle: A harness\nharness: small.yaml\n' >harnesses.yaml
+    signed harnesses small.yaml lead.yaml fixtures/wires/bundle-7.yaml
+}
+
 recordings() { # with a rig and a specimen that were corrected afterwards
     cp "$source/recordings/type1-L85-1.wbr.zst" one.wbr.zst
     cp "$source/fixtures/rigs/paper.yaml" rig.yaml
@@ -173,5 +181,6 @@ YAML
 [[ " $kinds " == *" machines "* ]] && machines
 [[ " $kinds " == *" bundles "* ]] && bundles
 [[ " $kinds " == *" predictions "* ]] && predictions
+[[ " $kinds " == *" harnesses "* ]] && harnesses
 [[ " $kinds " == *" recordings "* ]] && recordings
 finish "inputs of signed reports: $kinds"

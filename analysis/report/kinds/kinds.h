@@ -5,7 +5,7 @@
 #include "analysis/report/kind.h"
 
 enum {
-    WB_KINDS = 5
+    WB_KINDS = 6
 };
 
 /* The first is that of a campaign file without `kind`. */

@@ -1,10 +1,9 @@
-#include "analysis/harness/harness_output_private.h"
+#include "analysis/harness/harness_found.h"
 
 #include "base/units.h"
 #include "base/vec3.h"
-#include "tests/analysis/harness/harness_text.h"
+#include "tests/analysis/harness/harness_set.h"
 #include "tests/messages.h"
-#include "tests/own_folder.h"
 
 static char file[64];
 
@@ -16,25 +15,7 @@ static int begin(void **state)
     return 0;
 }
 
-static const struct wb_harness_settings yielding = {.torsion = 1.0};
 static const struct wb_harness_settings elastic = {.is_elastic = true, .torsion = 1.0};
-
-/* Computes the file with a line replaced; the caller releases the results and frees the plan. */
-static struct wb_harness_plan *compute(struct wb_harness_result_set *set, int line,
-                                       const char *text, const struct wb_harness_settings *settings)
-{
-    struct wb_harness_plan *const plan = make_plan();
-    write_harness(file, line, text);
-    assert_int_equal(wb_harness_file_read(plan, file), WB_OK);
-    assert_int_equal(wb_harness_run_compute(set, plan, settings, NULL, NULL), WB_OK);
-    return plan;
-}
-
-static void release(struct wb_harness_result_set *set, struct wb_harness_plan *plan)
-{
-    wb_harness_run_release(set);
-    free(plan);
-}
 
 static double weight_of(const struct wb_harness_plan *plan)
 {
@@ -50,7 +31,7 @@ static void root_carries_the_weight_of_what_hangs(void **unused)
 {
     (void)unused;
     struct wb_harness_result_set set;
-    struct wb_harness_plan *const plan = compute(&set, 0, NULL, &yielding);
+    struct wb_harness_plan *const plan = compute_set(&set, 0, NULL, &yielding);
     assert_true(set.converged);
     assert_int_equal(set.n_steps, 5);
     const struct wb_harness_force *const root = &set.results[0].forces[0];
@@ -64,33 +45,35 @@ static void root_carries_the_weight_of_what_hangs(void **unused)
     assert_false(set.results[3].forces[3].is_mounted);
     /* Taken off, nothing holds it. */
     assert_true(set.results[4].forces[0].size < 1e-9);
-    release(&set, plan);
+    release_set(&set, plan);
 }
 
 static void elastic_harness_forgets(void **unused)
 {
     (void)unused;
     struct wb_harness_result_set set;
-    struct wb_harness_plan *const plan = compute(&set, 0, NULL, &elastic);
-    int branch;
+    struct wb_harness_plan *const plan = compute_set(&set, 0, NULL, &elastic);
+    struct wb_harness_found found;
     assert_true(set.converged);
     for (int i = 0; i < 5; i++)
         assert_close(set.results[i].plastic, 0.0, 1e-12 * set.results[1].elastic);
-    assert_true(wb_harness_run_distance(&set, 4, &branch) < 1e-8);
-    release(&set, plan);
+    wb_harness_found_collect(&found, &set);
+    assert_true(found.is_taken_off && found.residual.value < 1e-8);
+    release_set(&set, plan);
 }
 
 static void yielding_harness_keeps_a_shape(void **unused)
 {
     (void)unused;
     struct wb_harness_result_set set;
-    struct wb_harness_plan *const plan = compute(&set, 0, NULL, &yielding);
-    int branch;
+    struct wb_harness_plan *const plan = compute_set(&set, 0, NULL, &yielding);
+    struct wb_harness_found found;
     for (int i = 1; i < 4; i++)
         assert_true(set.results[i].plastic > set.results[i - 1].plastic);
-    assert_true(wb_harness_run_distance(&set, 4, &branch) > 1e-3);
+    wb_harness_found_collect(&found, &set);
+    assert_true(found.is_taken_off && found.residual.value > 1e-3);
     assert_true(set.results[4].elastic < 1e-12);
-    release(&set, plan);
+    release_set(&set, plan);
 }
 
 /* The clip goes around a triangle three times. */
@@ -107,7 +90,7 @@ static void closed_sequence_yields_no_work(void **unused)
                                "  - {move: C1, at_mm: [150, -20, 70]}\n"
                                "  - {move: C1, at_mm: [190, 0, 30]}";
     struct wb_harness_result_set set;
-    struct wb_harness_plan *const plan = compute(&set, 19, laps, &yielding);
+    struct wb_harness_plan *const plan = compute_set(&set, 19, laps, &yielding);
     assert_true(set.converged);
     for (int lap = 0; lap < 3; lap++) {
         const struct wb_harness_step_result *const from = &set.results[1 + 3 * lap];
@@ -115,7 +98,7 @@ static void closed_sequence_yields_no_work(void **unused)
         assert_true(to->plastic > from->plastic);
         assert_true(to->plastic + to->elastic > from->plastic + from->elastic);
     }
-    release(&set, plan);
+    release_set(&set, plan);
 }
 
 /* The heavy branch hangs beside the clip, whose axis is turned: the trunk is twisted. */
@@ -124,17 +107,17 @@ static void forces_that_depend_on_a_default_are_known(void **unused)
     (void)unused;
     struct wb_harness_result_set set;
     struct wb_harness_plan *plan =
-        compute(&set, 18,
-                "  - {mount: K1, at_mm: [350, 200, -100], direction: [0, 1, 0.5]}\n"
-                "  - {mount: C1, at_mm: [190, 0, 30], direction: [1, 0.2, 0.2]}",
-                &yielding);
+        compute_set(&set, 18,
+                    "  - {mount: K1, at_mm: [350, 200, -100], direction: [0, 1, 0.5]}\n"
+                    "  - {mount: C1, at_mm: [190, 0, 30], direction: [1, 0.2, 0.2]}",
+                    &yielding);
     bool any = false;
     for (int i = 0; i < plan->n_items; i++)
-        any |= wb_harness_output_is_twist_sensitive(&set.results[1].forces[i]);
+        any |= wb_harness_found_is_twist_sensitive(&set.results[1].forces[i]);
     assert_true(any);
     assert_true(isfinite(set.results[1].forces[1].soft_force));
-    assert_false(wb_harness_output_is_twist_sensitive(&set.results[0].forces[0]));
-    release(&set, plan);
+    assert_false(wb_harness_found_is_twist_sensitive(&set.results[0].forces[0]));
+    release_set(&set, plan);
 
     plan = make_plan();
     write_harness(file, 0, NULL);
@@ -143,32 +126,41 @@ static void forces_that_depend_on_a_default_are_known(void **unused)
         plan->wires[i].torsional_stiffness = 1e-4;
     assert_int_equal(wb_harness_run_compute(&set, plan, &yielding, NULL, NULL), WB_OK);
     assert_true(isnan(set.results[1].forces[3].soft_force));
-    assert_false(wb_harness_output_is_twist_sensitive(&set.results[1].forces[3]));
+    assert_false(wb_harness_found_is_twist_sensitive(&set.results[1].forces[3]));
     assert_true(wb_harness_run_torsion(plan, 0, &yielding) == 1e-4);
-    release(&set, plan);
+    release_set(&set, plan);
 }
 
 static void limits_are_watched(void **unused)
 {
     (void)unused;
     struct wb_harness_result_set set;
-    struct wb_harness_plan *plan =
-        compute(&set, 15, "  - {name: C1, branch: B1, at_mm: 200, holds: axis, most_force_N: 0.1}",
-                &yielding);
+    struct wb_harness_found found;
+    struct wb_harness_plan *plan = compute_set(
+        &set, 15, "  - {name: C1, branch: B1, at_mm: 200, holds: axis, most_force_N: 0.1}",
+        &yielding);
     assert_true(set.results[1].forces[3].exceeds_force);
     assert_false(set.results[1].forces[3].exceeds_moment);
-    assert_true(wb_harness_output_exceeds(&set));
-    release(&set, plan);
-    plan = compute(&set, 8,
-                   "  - {name: B1, from: R, to: J, wire: trunk, length_mm: 300, least_radius_mm: "
-                   "1000}",
-                   &yielding);
+    wb_harness_found_collect(&found, &set);
+    assert_int_equal(found.n_limits, 1);
+    assert_int_equal(found.n_exceeded, 1);
+    release_set(&set, plan);
+    plan =
+        compute_set(&set, 8,
+                    "  - {name: B1, from: R, to: J, wire: trunk, length_mm: 300, least_radius_mm: "
+                    "1000}",
+                    &yielding);
     assert_true(set.results[1].branches[0].exceeds_radius);
     assert_false(set.results[1].branches[1].exceeds_radius);
-    release(&set, plan);
-    plan = compute(&set, 0, NULL, &yielding);
-    assert_false(wb_harness_output_exceeds(&set));
-    release(&set, plan);
+    assert_int_equal(wb_harness_found_exceeds_radius(&set, 0), 0);
+    assert_int_equal(wb_harness_found_exceeds_radius(&set, 1), -1);
+    wb_harness_found_collect(&found, &set);
+    assert_int_equal(found.n_exceeded, 1);
+    release_set(&set, plan);
+    plan = compute_set(&set, 0, NULL, &yielding);
+    wb_harness_found_collect(&found, &set);
+    assert_int_equal(found.n_limits + found.n_exceeded, 0);
+    release_set(&set, plan);
 }
 
 /* A constant natural curvature is the shape of the harness that was taken off before it yielded. */
@@ -177,10 +169,10 @@ static void natural_shape_is_free_of_force(void **unused)
     (void)unused;
     struct wb_harness_result_set set;
     struct wb_harness_plan *const plan =
-        compute(&set, 8,
-                "  - {name: B1, from: R, to: J, wire: trunk, length_mm: 300, natural_shape: "
-                "{curvature_1_m: [0, 5]}}",
-                &elastic);
+        compute_set(&set, 8,
+                    "  - {name: B1, from: R, to: J, wire: trunk, length_mm: 300, natural_shape: "
+                    "{curvature_1_m: [0, 5]}}",
+                    &elastic);
     /* An arc in the plane of x and y: curvature 5 /m about z. */
     const struct wb_harness_place *place = set.natural;
     while (place[1].branch == 0)
@@ -190,7 +182,7 @@ static void natural_shape_is_free_of_force(void **unused)
     assert_close(place->position[1], (1.0 - cos(1.5)) / 5.0, 1e-8);
     assert_close_relative(place->curvature, 5.0, 1e-12);
     assert_true(place->moment == 0.0);
-    release(&set, plan);
+    release_set(&set, plan);
 }
 
 static bool stop_in_second(void *context, int step, double fraction)
@@ -211,7 +203,7 @@ static void stops_when_asked(void **unused)
     assert_int_equal(set.n_steps, 2);
     assert_int_equal(set.results[1].end, WB_HARNESS_STOPPED);
     assert_true(set.results[1].fraction > 0.0 && set.results[1].fraction < 1.0);
-    release(&set, plan);
+    release_set(&set, plan);
 }
 
 static void check_result(const struct wb_harness_result_set *set, int step,
@@ -236,7 +228,7 @@ static void steps_that_are_undone_and_repeated_are_the_same_bit_for_bit(void **u
 {
     (void)unused;
     struct wb_harness_result_set set;
-    struct wb_harness_plan *const plan = compute(&set, 0, NULL, &yielding);
+    struct wb_harness_plan *const plan = compute_set(&set, 0, NULL, &yielding);
     struct wb_harness_run *run;
     struct wb_harness_step_result result;
     struct wb_memory memory = {0};
@@ -259,7 +251,7 @@ static void steps_that_are_undone_and_repeated_are_the_same_bit_for_bit(void **u
     free(state);
     wb_harness_run_destroy(run);
     wb_memory_release(&memory);
-    release(&set, plan);
+    release_set(&set, plan);
 }
 
 static bool stop_at_once(void *context, double fraction)
@@ -276,7 +268,7 @@ static void release_that_does_not_end_leaves_the_state_before(void **unused)
         RELEASE = 3
     };
     struct wb_harness_result_set set;
-    struct wb_harness_plan *const plan = compute(&set, 0, NULL, &yielding);
+    struct wb_harness_plan *const plan = compute_set(&set, 0, NULL, &yielding);
     struct wb_harness_run *run;
     struct wb_harness_step_result result;
     struct wb_memory memory = {0};
@@ -296,7 +288,7 @@ static void release_that_does_not_end_leaves_the_state_before(void **unused)
     check_result(&set, RELEASE, &result);
     wb_harness_run_destroy(run);
     wb_memory_release(&memory);
-    release(&set, plan);
+    release_set(&set, plan);
 }
 
 int main(void)

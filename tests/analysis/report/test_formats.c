@@ -188,6 +188,11 @@ FACT(campaign_of_a_machine, "campaign-machine.yaml")
     read_campaign(path, "machine", "A cable and its layers in three-point bending");
 }
 
+FACT(campaign_of_a_harness, "campaign-harness.yaml")
+{
+    read_campaign(path, "harness", "A trunk with two leads, mounted and taken off");
+}
+
 FACT(recording, "recording.wbr.zst")
 {
     struct wb_recording *recording;
@@ -276,6 +281,7 @@ static const char *const files[] = {
     "campaign-bundles.yaml",
     "campaign-prediction.yaml",
     "campaign-machine.yaml",
+    "campaign-harness.yaml",
     "recording.wbr.zst",
     "cantilever",
     "three-point",
@@ -324,6 +330,7 @@ int main(void)
         cmocka_unit_test(campaign_of_bundles_is_read),
         cmocka_unit_test(campaign_of_a_prediction_is_read),
         cmocka_unit_test(campaign_of_a_machine_is_read),
+        cmocka_unit_test(campaign_of_a_harness_is_read),
         cmocka_unit_test(recording_is_read),
         cmocka_unit_test(dataset_of_a_cantilever_is_read),
         cmocka_unit_test(dataset_of_three_point_bending_is_read),
