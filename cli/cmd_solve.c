@@ -101,13 +101,16 @@ static void take_argument(struct argp_state *state, const char *argument,
     s->kind = 1U << kind;
 }
 
-static void check(struct argp_state *state, const struct wb_solve_settings *s)
+static void check(struct argp_state *state, const struct options *options)
 {
+    const struct wb_solve_settings *const s = &options->settings;
     if (s->kind == 0)
         argp_error(state,
                    "model missing: cantilever, wire3d, wire1d, bundle, bending3p or harness");
     if (s->vtk_every > 0 && !s->vtk)
         argp_error(state, "--vtk-every needs --vtk");
+    if (s->frames > 0 && !s->vtk && !options->common.output)
+        argp_error(state, "--frames needs -o or --vtk");
     if (s->sweep && !s->uncertain)
         argp_error(state, "--sweep needs --uncertain");
     if (s->checkpoint_interval > 0.0 && !s->checkpoint)
@@ -129,7 +132,7 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     }
     if (key == ARGP_KEY_END)
-        check(state, &o->settings);
+        check(state, o);
     return wb_command_parse_common(key, argument, state);
 }
 

@@ -127,7 +127,8 @@ static enum wb_status compute(const struct wb_command_common *common,
                               struct wb_harness_plan *plan, struct wb_harness_result_set *set)
 {
     const struct wb_harness_settings s = {.is_elastic = settings->law == WB_SOLVE_ELASTIC,
-                                          .torsion = 1.0};
+                                          .torsion = 1.0,
+                                          .frames = settings->frames};
     struct watched watched = {.plan = plan};
     char path[WB_PATH];
     WB_TRY(wb_file_find_fixture(path, "harnesses", settings->model, NULL));

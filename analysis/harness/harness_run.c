@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/harness/harness_frames.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 
@@ -21,6 +22,7 @@ struct run {
     /* Of the current step. */
     int step;
     struct wb_harness_step_result *result;
+    struct wb_harness_frames frames;
     bool (*progress)(void *context, int step, double fraction);
     void *context;
 };
@@ -171,6 +173,7 @@ static void set_place(const struct run *run, struct wb_harness_place *place, int
     for (int k = 0; k < 3; k++) {
         place->position[k] = node.position[k];
         place->direction[k] = R[3 * k];
+        place->up[k] = R[3 * k + 2];
     }
 }
 
@@ -204,6 +207,7 @@ static void take_places(const struct run *run, struct wb_harness_place *places)
             to->s = end.s;
             memcpy(to->position, end.position, sizeof end.position);
             memcpy(to->direction, end.direction, sizeof end.direction);
+            memcpy(to->up, end.up, sizeof end.up);
         }
     }
 }
@@ -257,6 +261,16 @@ static void watch_branches(const struct run *run, bool at_end)
     }
 }
 
+static void add_shape(struct wb_harness_result_set *set, int step, double fraction,
+                      const struct wb_harness_place *places)
+{
+    set->shapes[set->n_shapes++] = (struct wb_harness_shape){
+        .time = round((step + fraction) * 1e6) / 1e6,
+        .step = step,
+        .places = places,
+    };
+}
+
 static bool observe(void *context, double fraction)
 {
     struct run *const run = context;
@@ -273,6 +287,9 @@ static bool observe(void *context, double fraction)
         f->exceeds_moment = item->largest_moment > 0.0 && f->largest_moment > item->largest_moment;
     }
     watch_branches(run, false);
+    struct wb_harness_place *const frame = wb_harness_frames_take(&run->frames, fraction);
+    if (frame)
+        take_places(run, frame);
     return !run->progress || run->progress(run->context, run->step, fraction);
 }
 
@@ -342,6 +359,10 @@ static void take_step(struct run *run, const struct wb_harness_result *result)
     take_forces(run);
     watch_branches(run, true);
     take_places(run, r->places);
+    wb_harness_frames_end(&run->frames, result->fraction);
+    for (int i = 0; i < run->frames.n; i++)
+        add_shape(run->set, run->step, run->frames.list[i].fraction, run->frames.list[i].places);
+    add_shape(run->set, run->step, 1.0, r->places);
 }
 
 static void begin_step(struct run *run, int step)
@@ -354,6 +375,8 @@ static void begin_step(struct run *run, int step)
     r->forces = wb_memory_take(set->memory, (size_t)run->plan->n_items, sizeof *r->forces);
     r->branches = wb_memory_take(set->memory, branches, sizeof *r->branches);
     r->places = wb_memory_take(set->memory, (size_t)set->n_places, sizeof *r->places);
+    wb_harness_frames_begin(&run->frames, run->plan->steps[step].kind == WB_HARNESS_RELEASE ||
+                                              run->plan->steps[step].kind == WB_HARNESS_TAKE_OFF);
     for (int i = 0; i < run->plan->n_branches; i++) {
         r->branches[i].least_radius = (double)INFINITY;
         if (step > 0)
@@ -373,10 +396,15 @@ static enum wb_status compute(struct run *run)
     plan_places(run);
     set->results = wb_memory_take(set->memory, (size_t)run->plan->n_steps, sizeof *set->results);
     set->natural = wb_memory_take(set->memory, (size_t)set->n_places, sizeof *set->natural);
+    wb_harness_frames_create(&run->frames, set->settings.frames, set->n_places, set->memory);
+    set->shapes = wb_memory_take(
+        set->memory, 1 + (size_t)run->plan->n_steps * (1 + (size_t)set->settings.frames),
+        sizeof *set->shapes);
     wb_harness_weight(run->harness, weight);
     set->weight = wb_vec3_length(weight);
     wb_harness_evaluate(run->harness, 0.0, &balance);
     take_places(run, set->natural);
+    add_shape(set, -1, 1.0, set->natural);
     set->converged = true;
     for (int i = 0; i < run->plan->n_steps && set->converged; i++) {
         struct wb_harness_result result;
@@ -432,6 +460,7 @@ enum wb_status wb_harness_run_compute(struct wb_harness_result_set *set,
     if (!has_default_torsion(plan) || !set->converged)
         return WB_OK;
     softer.torsion *= 0.2;
+    softer.frames = 0;
     const enum wb_status status = compute_once(&soft, plan, &softer, progress, context);
     for (int i = 0; status == WB_OK && i < soft.n_steps && soft.converged; i++) {
         for (int k = 0; k < plan->n_items; k++)

@@ -156,9 +156,9 @@ enum wb_status wb_harness_vtk_write(const struct wb_harness_result_set *set, con
     state.first = wb_memory_take(&memory, places, sizeof *state.first);
     find_bands(&state);
     enum wb_status status = wb_vtk_file_series_init(&series, folder, set->plan->name);
-    for (int i = 0; i <= set->n_steps && status == WB_OK; i++) {
-        state.places = i == 0 ? set->natural : set->results[i - 1].places;
-        status = add_state(&series, &state, i);
+    for (int i = 0; i < set->n_shapes && status == WB_OK; i++) {
+        state.places = set->shapes[i].places;
+        status = add_state(&series, &state, set->shapes[i].time);
     }
     wb_vtk_file_series_release(&series);
     wb_memory_release(&memory);

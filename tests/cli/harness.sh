@@ -68,6 +68,23 @@ for array in position_mm curvature_1_m moment_N_mm torque_N_mm tension_N branch;
     grep -aq "Name=\"$array\"" vtk/small-0003.vtu || fail "no $array in the VTK files"
 done
 
+# Frames are shapes between the steps, at the same times in the table and for ParaView; the steps stay.
+"$wirebench" solve harness small --law elastic --frames 4 --vtk films -o framed --no-figure >said ||
+    fail '--frames'
+python3 - plain framed films/small.pvd <<'PYTHON' || fail 'the frames are wrong'
+import re, sys
+plain, framed = ([line.split(",", 1) for line in open(f + "/shapes.csv")] for f in sys.argv[1:3])
+times = list(dict.fromkeys(row[0] for row in framed[1:]))
+whole = {row[0] for row in plain[1:]}
+assert [row for row in framed[1:] if row[0] in whole] == plain[1:]
+for step in range(7):
+    between = [float(t) for t in times[1:] if step < float(t) < step + 1]
+    assert 1 <= len(between) <= 3 and between == sorted(between), (step, between)
+listed = re.findall('timestep="([^"]*)"', open(sys.argv[3]).read())
+assert listed == ["0"] + times[1:], (listed, times)
+PYTHON
+cmp -s plain/harness.json framed/harness.json || fail '--frames changes the results'
+
 # A properties file of `calibrate` is a wire, with unloading and a range of curvatures.
 sed "s|wire: type3|wire: $root/docs/cards/type1.yaml|" "$root/fixtures/harnesses/small.yaml" >own.yaml
 "$wirebench" solve harness own.yaml -o own >said 2>warned || fail "properties: $(cat warned)"
@@ -84,6 +101,7 @@ ends_with() { # CODE WORDS ARGUMENTS...
 }
 ends_with 1 --force solve harness small -o out
 ends_with 1 --force solve harness small -o other --vtk vtk
+ends_with 2 '--frames needs' solve harness small --frames 3
 ends_with 0 found solve harness small -o out --force
 ends_with 2 'HARNESS.yaml' solve harness
 ends_with 1 'a wire file' solve harness "$root/fixtures/wires/type3.yaml"
