@@ -121,30 +121,39 @@ void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_j
 
 static void format_value(struct wb_text *text, json_t *value, int depth);
 
-static void format_key(struct wb_text *text, const char *key)
+/* Without blanks where the depth is negative. */
+static void break_line(struct wb_text *text, int depth)
+{
+    if (depth >= 0)
+        wb_text_append(text, "\n%*s", 2 * depth, "");
+}
+
+static void format_key(struct wb_text *text, const char *key, int depth)
 {
     json_t *const string = json_string(key);
     format_value(text, string, 0);
-    wb_text_append(text, ": ");
+    wb_text_append(text, depth < 0 ? ":" : ": ");
     json_decref(string);
 }
 
 static void format_list(struct wb_text *text, json_t *list, int depth)
 {
     const bool is_object = json_is_object(list);
+    const int inner = depth < 0 ? depth : depth + 1;
     void *member = json_object_iter(list);
     const size_t n = is_object ? json_object_size(list) : json_array_size(list);
     wb_text_append(text, is_object ? "{" : "[");
     for (size_t i = 0; i < n; i++) {
-        wb_text_append(text, "%s\n%*s", i == 0 ? "" : ",", 2 * (depth + 1), "");
+        wb_text_append(text, "%s", i == 0 ? "" : ",");
+        break_line(text, inner);
         if (is_object)
-            format_key(text, json_object_iter_key(member));
+            format_key(text, json_object_iter_key(member), inner);
         format_value(text, is_object ? json_object_iter_value(member) : json_array_get(list, i),
-                     depth + 1);
+                     inner);
         member = json_object_iter_next(list, member);
     }
     if (n > 0)
-        wb_text_append(text, "\n%*s", 2 * depth, "");
+        break_line(text, depth);
     wb_text_append(text, is_object ? "}" : "]");
 }
 
@@ -169,6 +178,13 @@ char *wb_json_format(const struct wb_json *root)
     struct wb_text text = {0};
     format_value(&text, jansson(root), 0);
     wb_text_append(&text, "\n");
+    return text.bytes;
+}
+
+char *wb_json_format_compact(const struct wb_json *root)
+{
+    struct wb_text text = {0};
+    format_value(&text, jansson(root), -1);
     return text.bytes;
 }
 

@@ -44,6 +44,8 @@ void wb_json_set_copy(struct wb_json *object, const char *key, const struct wb_j
 /* Text of the document (caller frees), indented by two spaces, with a final newline; doubles are
  * read back exactly. */
 char *wb_json_format(const struct wb_json *root) __attribute__((returns_nonnull));
+/* The same without blanks and line breaks, for programs. */
+char *wb_json_format_compact(const struct wb_json *root) __attribute__((returns_nonnull));
 
 /* Reads a document whose root is an object; messages name file and line. */
 WB_MUST_CHECK enum wb_status wb_json_read(struct wb_json **root, const char *path);

@@ -109,8 +109,10 @@ static void check(struct argp_state *state, const struct options *options)
                    "model missing: cantilever, wire3d, wire1d, bundle, bending3p or harness");
     if (s->vtk_every > 0 && !s->vtk)
         argp_error(state, "--vtk-every needs --vtk");
-    if (s->frames > 0 && !s->vtk && !options->common.output)
-        argp_error(state, "--frames needs -o or --vtk");
+    if (s->frames > 0 && !s->vtk && !s->gltf && !options->common.output)
+        argp_error(state, "--frames needs -o, --vtk or --gltf");
+    if (s->gltf && !wb_command_ends_in(s->gltf, ".glb"))
+        argp_error(state, "--gltf: '%s' does not end in .glb", s->gltf);
     if (s->sweep && !s->uncertain)
         argp_error(state, "--sweep needs --uncertain");
     if (s->checkpoint_interval > 0.0 && !s->checkpoint)

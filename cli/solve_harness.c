@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "analysis/harness/harness_drawing.h"
+#include "analysis/harness/harness_gltf.h"
 #include "analysis/harness/harness_output.h"
 #include "analysis/harness/harness_vtk.h"
 #include "base/interrupt.h"
@@ -93,6 +94,8 @@ static enum wb_status deliver(const struct wb_command_common *common,
         WB_TRY(wb_harness_drawing_write(set, figure));
     if (settings->vtk)
         WB_TRY(wb_harness_vtk_write(set, settings->vtk));
+    if (settings->gltf)
+        WB_TRY(wb_harness_gltf_write(set, settings->gltf));
     warn_not_converged(set);
     if (common->json) {
         struct wb_json *const root = wb_json_create();
@@ -108,6 +111,8 @@ static enum wb_status deliver(const struct wb_command_common *common,
     if (settings->vtk)
         wb_finding_append_command(&finding.next, "open the .pvd file in %s with ParaView",
                                   settings->vtk);
+    else if (settings->gltf)
+        wb_finding_append_command(&finding.next, "open %s with a glTF viewer", settings->gltf);
     else if (!common->output)
         wb_finding_append_command(&finding.next,
                                   "wirebench solve harness %s -o DIR, for shapes "
@@ -138,6 +143,8 @@ static enum wb_status compute(const struct wb_command_common *common,
         WB_TRY(wb_file_prepare_output(common->output, common->force));
     if (settings->vtk)
         WB_TRY(wb_file_prepare_output(settings->vtk, common->force));
+    if (settings->gltf)
+        WB_TRY(wb_command_check_output(settings->gltf, common->force));
     if (figure[0])
         WB_TRY(wb_finding_check_figure(figure, common->force));
     if (!s.is_elastic)
