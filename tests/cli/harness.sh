@@ -67,6 +67,24 @@ PYTHON
 for array in position_mm curvature_1_m moment_N_mm torque_N_mm tension_N branch; do
     grep -aq "Name=\"$array\"" vtk/small-0003.vtu || fail "no $array in the VTK files"
 done
+# A ring of twelve points around each place, with the radius of the wire.
+python3 - vtk/small-0003.vtu plain/shapes.csv <<'PYTHON' || fail 'the VTK tubes are not around the wires'
+import csv, math, re, struct, sys
+raw = open(sys.argv[1], "rb").read()
+begin = raw.index(b"_", raw.index(b'encoding="raw"')) + 1
+begin += int(re.search(rb'Name="position_mm"[^>]*offset="(\d+)"', raw).group(1))
+(size,) = struct.unpack_from("<Q", raw, begin)
+points = list(struct.iter_unpack("<3d", raw[begin + 8 : begin + 8 + size]))
+places = [row for row in csv.DictReader(open(sys.argv[2])) if row["step"] == "3"]
+assert len(points) == 12 * len(places)
+for i, row in enumerate(places):
+    centre = [float(row[k]) for k in ("x_mm", "y_mm", "z_mm")]
+    radius = 2.3 if row["branch"] == "B1" else 0.7
+    for k in range(12):
+        point, opposite = points[12 * i + k], points[12 * i + (k + 6) % 12]
+        assert math.isclose(math.dist(point, centre), radius, rel_tol=1e-9)
+        assert math.isclose(math.dist(point, opposite), 2 * radius, rel_tol=1e-9)
+PYTHON
 
 # Frames are shapes between the steps, at the same times in the table and for ParaView; the steps stay.
 "$wirebench" solve harness small --law elastic --frames 4 --vtk films -o framed --no-figure >said ||
