@@ -101,13 +101,18 @@ static void take_argument(struct argp_state *state, const char *argument,
     s->kind = 1U << kind;
 }
 
-static void check(struct argp_state *state, const struct wb_solve_settings *s)
+static void check(struct argp_state *state, const struct options *options)
 {
+    const struct wb_solve_settings *const s = &options->settings;
     if (s->kind == 0)
         argp_error(state,
                    "model missing: cantilever, wire3d, wire1d, bundle, bending3p or harness");
     if (s->vtk_every > 0 && !s->vtk)
         argp_error(state, "--vtk-every needs --vtk");
+    if (s->frames > 0 && !s->vtk && !s->gltf && !options->common.output)
+        argp_error(state, "--frames needs -o, --vtk or --gltf");
+    if (s->gltf && !wb_command_ends_in(s->gltf, ".glb"))
+        argp_error(state, "--gltf: '%s' does not end in .glb", s->gltf);
     if (s->sweep && !s->uncertain)
         argp_error(state, "--sweep needs --uncertain");
     if (s->checkpoint_interval > 0.0 && !s->checkpoint)
@@ -129,9 +134,11 @@ static error_t parse(int key, char *argument, struct argp_state *state)
         return 0;
     }
     if (key == ARGP_KEY_END) {
-        check(state, &o->settings);
-        if (o->settings.follow && (o->common.output || o->settings.vtk || o->common.json))
-            argp_error(state, "--follow writes no files: -o, --vtk and --json do not apply");
+        check(state, o);
+        if (o->settings.follow &&
+            (o->common.output || o->settings.vtk || o->settings.gltf || o->common.json))
+            argp_error(state,
+                       "--follow writes no files: -o, --vtk, --gltf and --json do not apply");
     }
     return wb_command_parse_common(key, argument, state);
 }

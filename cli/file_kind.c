@@ -90,6 +90,7 @@ static const struct {
     [WB_FILE_HDF5] = {"hdf5", "an HDF5 file",
                       "read it with another program (h5dump, h5py, MATLAB)"},
     [WB_FILE_VTK] = {"vtk", "a VTK file", "open it with ParaView"},
+    [WB_FILE_GLTF] = {"gltf", "a 3D scene (glTF)", "open it with a glTF viewer or Blender"},
     [WB_FILE_FIGURE] = {"figure", "a figure or page", "open it with a viewer"},
 };
 
@@ -316,6 +317,7 @@ static enum wb_file_kind find_head(const char *head, size_t n)
         {"\x89HDF\r\n\x1a\n", 8, WB_FILE_HDF5},
         {"\x89PNG\r\n\x1a\n", 8, WB_FILE_FIGURE},
         {"%PDF-", 5, WB_FILE_FIGURE},
+        {"glTF", 4, WB_FILE_GLTF},
     };
     for (size_t i = 0; i < WB_COUNT(magic); i++) {
         if (n >= magic[i].n && memcmp(head, magic[i].bytes, magic[i].n) == 0)

@@ -42,6 +42,7 @@ enum wb_file_kind {
     WB_FILE_CHECKPOINT,
     WB_FILE_HDF5,
     WB_FILE_VTK,
+    WB_FILE_GLTF,   /* a 3D scene */
     WB_FILE_FIGURE, /* a drawing or a page */
     WB_FILE_KINDS
 };

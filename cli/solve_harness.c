@@ -5,6 +5,7 @@
 
 #include "analysis/harness/harness_drawing.h"
 #include "analysis/harness/harness_found.h"
+#include "analysis/harness/harness_gltf.h"
 #include "analysis/harness/harness_output.h"
 #include "analysis/harness/harness_vtk.h"
 #include "base/interrupt.h"
@@ -97,6 +98,8 @@ static enum wb_status deliver(const struct wb_command_common *common,
         WB_TRY(wb_harness_drawing_write(set, figure));
     if (settings->vtk)
         WB_TRY(wb_harness_vtk_write(set, settings->vtk));
+    if (settings->gltf)
+        WB_TRY(wb_harness_gltf_write(set, settings->gltf));
     warn_not_converged(set);
     if (common->json) {
         struct wb_json *const root = wb_json_create();
@@ -112,6 +115,8 @@ static enum wb_status deliver(const struct wb_command_common *common,
     if (settings->vtk)
         wb_finding_append_command(&finding.next, "open the .pvd file in %s with ParaView",
                                   settings->vtk);
+    else if (settings->gltf)
+        wb_finding_append_command(&finding.next, "open %s with a glTF viewer", settings->gltf);
     else if (!common->output)
         wb_finding_append_command(&finding.next,
                                   "wirebench solve harness %s -o DIR, for shapes "
@@ -131,7 +136,8 @@ static enum wb_status compute(const struct wb_command_common *common,
                               struct wb_harness_plan *plan, struct wb_harness_result_set *set)
 {
     const struct wb_harness_settings s = {.is_elastic = settings->law == WB_SOLVE_ELASTIC,
-                                          .torsion = 1.0};
+                                          .torsion = 1.0,
+                                          .frames = settings->frames};
     struct watched watched = {.plan = plan};
     char path[WB_PATH];
     WB_TRY(wb_file_find_fixture(path, "harnesses", settings->model, NULL));
@@ -141,6 +147,8 @@ static enum wb_status compute(const struct wb_command_common *common,
         WB_TRY(wb_file_prepare_output(common->output, common->force));
     if (settings->vtk)
         WB_TRY(wb_file_prepare_output(settings->vtk, common->force));
+    if (settings->gltf)
+        WB_TRY(wb_command_check_output(settings->gltf, common->force));
     if (figure[0])
         WB_TRY(wb_finding_check_figure(figure, common->force));
     if (!s.is_elastic)

@@ -10,6 +10,7 @@
 #include "analysis/keys/common.h"
 #include "analysis/keys/row.h"
 #include "base/file.h"
+#include "base/number.h"
 #include "base/units.h"
 
 #define FORCE(member) WB_AT(struct wb_harness_force, member)
@@ -270,11 +271,10 @@ static enum wb_status write_shapes(const struct wb_harness_result_set *set, cons
         "twist_1_m", "moment_N_mm", "torque_N_mm", "tension_N"};
     struct wb_text text = {0};
     wb_csv_table_append_header(&text, names, WB_COUNT(names));
-    append_places(&text, set, "natural", set->natural);
-    for (int i = 0; i < set->n_steps; i++) {
-        char step[16];
-        snprintf(step, sizeof step, "%d", i + 1);
-        append_places(&text, set, step, set->results[i].places);
+    for (int i = 0; i < set->n_shapes; i++) {
+        char step[WB_NUMBER_TEXT];
+        append_places(&text, set, i == 0 ? "natural" : wb_number_format(set->shapes[i].time, step),
+                      set->shapes[i].places);
     }
     const enum wb_status status = wb_csv_table_write(folder, "shapes.csv", &text);
     wb_text_release(&text);

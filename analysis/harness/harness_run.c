@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/harness/harness_frames.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 
@@ -28,6 +29,7 @@ struct wb_harness_run {
     void *before; /* state before a release */
     /* Of the current step. */
     struct wb_harness_step_result *result;
+    struct wb_harness_frames frames; /* none outside wb_harness_run_compute() */
     bool (*watch)(void *context, double fraction);
     void *context;
 };
@@ -177,6 +179,7 @@ static void set_place(const struct wb_harness_run *run, struct wb_harness_place 
     for (int k = 0; k < 3; k++) {
         place->position[k] = node.position[k];
         place->direction[k] = R[3 * k];
+        place->up[k] = R[3 * k + 2];
     }
 }
 
@@ -210,6 +213,7 @@ static void take_places(const struct wb_harness_run *run, struct wb_harness_plac
             to->s = end.s;
             memcpy(to->position, end.position, sizeof end.position);
             memcpy(to->direction, end.direction, sizeof end.direction);
+            memcpy(to->up, end.up, sizeof end.up);
         }
     }
 }
@@ -280,6 +284,9 @@ static bool observe(void *context, double fraction)
         f->exceeds_moment = item->largest_moment > 0.0 && f->largest_moment > item->largest_moment;
     }
     watch_branches(run, false);
+    struct wb_harness_place *const frame = wb_harness_frames_take(&run->frames, fraction);
+    if (frame)
+        take_places(run, frame);
     return !run->watch || run->watch(run->context, fraction);
 }
 
@@ -484,11 +491,32 @@ static bool watch_step(void *context, double fraction)
     return !watched->progress || watched->progress(watched->context, watched->step, fraction);
 }
 
+static void add_shape(struct wb_harness_result_set *set, int step, double fraction,
+                      const struct wb_harness_place *places)
+{
+    set->shapes[set->n_shapes++] = (struct wb_harness_shape){
+        .time = round((step + fraction) * 1e6) / 1e6,
+        .step = step,
+        .places = places,
+    };
+}
+
+static void add_shapes(struct wb_harness_result_set *set, struct wb_harness_frames *frames,
+                       int step, const struct wb_harness_step_result *result)
+{
+    wb_harness_frames_end(frames, result->fraction);
+    for (int i = 0; i < frames->n; i++)
+        add_shape(set, step, frames->list[i].fraction, frames->list[i].places);
+    add_shape(set, step, 1.0, result->places);
+}
+
 static void compute(struct wb_harness_result_set *set, struct wb_harness_run *run,
                     struct watched *watched)
 {
     const struct wb_harness_plan *const plan = set->plan;
+    const size_t most_shapes = 1 + (size_t)plan->n_steps * (1 + (size_t)set->settings.frames);
     struct wb_harness_step_result natural;
+    struct wb_harness_frames *const frames = &run->frames;
     double weight[6];
     wb_harness_run_take_memory(run, set->memory, &natural);
     wb_harness_run_begin(run, &natural);
@@ -498,12 +526,18 @@ static void compute(struct wb_harness_result_set *set, struct wb_harness_run *ru
     set->weight = wb_vec3_length(weight);
     set->natural = natural.places;
     set->results = wb_memory_take(set->memory, (size_t)plan->n_steps, sizeof *set->results);
+    set->shapes = wb_memory_take(set->memory, most_shapes, sizeof *set->shapes);
+    add_shape(set, -1, 1.0, set->natural);
+    wb_harness_frames_create(frames, set->settings.frames, set->n_places, set->memory);
     set->converged = true;
     for (int i = 0; i < plan->n_steps && set->converged; i++) {
         struct wb_harness_step_result *const result = &set->results[i];
+        const enum wb_harness_step_kind kind = plan->steps[i].kind;
         watched->step = i;
         wb_harness_run_take_memory(run, set->memory, result);
+        wb_harness_frames_begin(frames, kind == WB_HARNESS_RELEASE || kind == WB_HARNESS_TAKE_OFF);
         wb_harness_run_step(run, &plan->steps[i], watch_step, watched, result);
+        add_shapes(set, frames, i, result);
         set->n_steps = i + 1;
         set->converged = result->end == WB_HARNESS_CONVERGED;
     }
@@ -546,6 +580,7 @@ enum wb_status wb_harness_run_compute(struct wb_harness_result_set *set,
     if (!has_default_torsion(plan) || !set->converged)
         return WB_OK;
     softer.torsion *= 0.2;
+    softer.frames = 0;
     const enum wb_status status = compute_once(&soft, plan, &softer, progress, context);
     for (int i = 0; status == WB_OK && i < soft.n_steps && soft.converged; i++) {
         for (int k = 0; k < plan->n_items; k++)

@@ -13,6 +13,7 @@
 struct wb_harness_settings {
     bool is_elastic; /* the same wires without yielding */
     double torsion;  /* factor on a torsional stiffness that the file does not give */
+    int frames;      /* shapes of each step, its end included; 0: its end alone */
     /* Of the computation; 0: the defaults. */
     double element_length;               /* m */
     double most_rotation;                /* of a joint in an increment, rad */
@@ -44,6 +45,7 @@ struct wb_harness_place {
     double s;                /* m, along the branch */
     double position[3];      /* m */
     double direction[3];     /* of the wire */
+    double up[3];            /* z axis of its section */
     double curvature, twist; /* 1/m */
     double moment, torque;   /* N m */
     double tension;          /* N */
@@ -66,6 +68,13 @@ struct wb_harness_step_result {
     double plastic;                            /* J: plastic work from the first step on */
 };
 
+/* The shape after a step, or a frame within it. */
+struct wb_harness_shape {
+    double time; /* steps completed, with the fraction of the step, to 1e-6 */
+    int step;    /* index; -1: before the first step, free of stress */
+    const struct wb_harness_place *places; /* (n_places) */
+};
+
 struct wb_harness_result_set {
     const struct wb_harness_plan *plan; /* borrowed */
     struct wb_harness_settings settings;
@@ -75,6 +84,8 @@ struct wb_harness_result_set {
     bool converged;
     struct wb_harness_place *natural;       /* (n_places) the stress-free shape */
     struct wb_harness_step_result *results; /* (n_steps of the plan) */
+    int n_shapes;
+    struct wb_harness_shape *shapes; /* (n_shapes) the natural one, frames and ends in order */
     struct wb_memory *memory;
 };
 

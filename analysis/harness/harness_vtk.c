@@ -16,29 +16,9 @@ enum {
 struct state {
     const struct wb_harness_result_set *set;
     const struct wb_harness_place *places; /* (set->n_places) */
-    double (*across)[3];                   /* (n_places) unit vectors across the wire */
     int *first;                            /* (n_bands) place before each band of quads */
     int n_bands;
 };
-
-/* A direction across the wire at each place: that of the place before, made perpendicular, so that
- * the quads of a tube do not twist. */
-static void turn_along(struct state *state)
-{
-    for (int i = 0; i < state->set->n_places; i++) {
-        const struct wb_harness_place *const p = &state->places[i];
-        const bool begins = i == 0 || state->places[i - 1].branch != p->branch;
-        double *const a = state->across[i];
-        const double up[3] = {0.0, 0.0, 1.0}, side[3] = {0.0, 1.0, 0.0};
-        const double *const from = !begins                       ? state->across[i - 1]
-                                   : fabs(p->direction[2]) < 0.9 ? up
-                                                                 : side;
-        const double along = wb_vec3_dot(from, p->direction);
-        for (int k = 0; k < 3; k++)
-            a[k] = from[k] - along * p->direction[k];
-        (void)wb_vec3_normalise(a);
-    }
-}
 
 static void find_bands(struct state *state)
 {
@@ -61,12 +41,11 @@ static double position(const void *context, size_t i)
     const size_t point = i / 3, k = i % 3;
     const struct wb_harness_place *const p = place_at(state, point);
     const struct wb_harness_plan *const plan = state->set->plan;
-    const double *const a = state->across[point / AROUND];
     const double radius = 0.5 * plan->wires[plan->branches[p->branch].wire].diameter;
     const double angle = 2.0 * M_PI * (double)(point % AROUND) / AROUND;
-    double b[3];
-    wb_vec3_cross(p->direction, a, b);
-    return (p->position[k] + radius * (cos(angle) * a[k] + sin(angle) * b[k])) / WB_MM;
+    double side[3];
+    wb_vec3_cross(p->direction, p->up, side);
+    return (p->position[k] + radius * (cos(angle) * p->up[k] + sin(angle) * side[k])) / WB_MM;
 }
 
 static double curvature(const void *state, size_t i)
@@ -137,10 +116,10 @@ static enum wb_status write_state(const struct state *state, const char *path)
                              sizeof arrays / sizeof arrays[0], state);
 }
 
-static enum wb_status add_state(struct wb_vtk_file_series *series, struct state *state, double time)
+static enum wb_status add_state(struct wb_vtk_file_series *series, const struct state *state,
+                                double time)
 {
     char path[WB_PATH];
-    turn_along(state);
     WB_TRY(wb_vtk_file_series_path(series, time, path));
     WB_TRY(write_state(state, path));
     return wb_vtk_file_series_count(series, time);
@@ -148,17 +127,15 @@ static enum wb_status add_state(struct wb_vtk_file_series *series, struct state 
 
 enum wb_status wb_harness_vtk_write(const struct wb_harness_result_set *set, const char *folder)
 {
-    const size_t places = (size_t)set->n_places;
     struct wb_memory memory = {0};
     struct wb_vtk_file_series series = {.n = 0};
     struct state state = {.set = set, .places = set->natural};
-    state.across = wb_memory_take(&memory, places, sizeof *state.across);
-    state.first = wb_memory_take(&memory, places, sizeof *state.first);
+    state.first = wb_memory_take(&memory, (size_t)set->n_places, sizeof *state.first);
     find_bands(&state);
     enum wb_status status = wb_vtk_file_series_init(&series, folder, set->plan->name);
-    for (int i = 0; i <= set->n_steps && status == WB_OK; i++) {
-        state.places = i == 0 ? set->natural : set->results[i - 1].places;
-        status = add_state(&series, &state, i);
+    for (int i = 0; i < set->n_shapes && status == WB_OK; i++) {
+        state.places = set->shapes[i].places;
+        status = add_state(&series, &state, set->shapes[i].time);
     }
     wb_vtk_file_series_release(&series);
     wb_memory_release(&memory);

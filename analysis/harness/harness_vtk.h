@@ -6,8 +6,8 @@
 #include "analysis/harness/harness_run.h"
 #include "base/status.h"
 
-/* Writes NAME-0000.vtu, the stress-free shape, a file for each step, and NAME.pvd, whose times are
- * the numbers of the steps, into a folder that exists. */
+/* Writes NAME-0000.vtu, the stress-free shape, a file for each frame and step, and NAME.pvd, whose
+ * times are those of the shapes, into a folder that exists. */
 WB_MUST_CHECK enum wb_status wb_harness_vtk_write(const struct wb_harness_result_set *set,
                                                   const char *folder);
 

@@ -49,6 +49,12 @@ static double channel_of(double linear)
     return fmin(fmax(value, 0.0), 1.0);
 }
 
+struct wb_colour wb_palette_linear(struct wb_colour colour)
+{
+    return (struct wb_colour){linear_of(colour.red), linear_of(colour.green),
+                              linear_of(colour.blue), colour.alpha};
+}
+
 /* OKLab (Ottosson 2020): equal distances look equally far apart. */
 static void lab_of(struct wb_colour colour, double lab[3])
 {

@@ -42,6 +42,9 @@ struct wb_colour wb_palette_good(void);    /* what keeps a limit */
         0.34, 0.71, 0.91, (alpha)                                                                  \
     }
 
+/* The same colour with channels in proportion to light, which shading takes. */
+struct wb_colour wb_palette_linear(struct wb_colour colour);
+
 /* The same colour with another alpha. */
 struct wb_colour wb_palette_fade(struct wb_colour colour, double alpha);
 

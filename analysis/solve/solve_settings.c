@@ -77,6 +77,13 @@ static const struct wb_setting rows[] = {
     {WB_ROW_TEXT(wb_solve_settings, vtk, "vtk"),
      WB_ROW_OPTION("vtk", "DIR", "Write the state of every row, or step, for ParaView"),
      .applies = WB_SOLVE_WIRE3D | WB_SOLVE_BUNDLE | WB_SOLVE_HARNESS},
+    {WB_ROW_TEXT(wb_solve_settings, gltf, "gltf"),
+     WB_ROW_OPTION("gltf", "FILE.glb",
+                   "Write the shapes as an animated 3D scene for browsers and CAD (binary glTF)"),
+     .applies = WB_SOLVE_HARNESS},
+    {WB_ROW_INTEGER(wb_solve_settings, frames, "frames", 1, 1000, 0),
+     WB_ROW_OPTION("frames", "N", "Write N shapes of each step, the last of which is its end"),
+     .otherwise = "the end alone", .applies = WB_SOLVE_HARNESS},
     {WB_ROW_CHOICE(wb_solve_settings, bundle_model, "model", bundle_models, 0),
      WB_ROW_OPTION("model", "MODEL",
                    "Compute hexahedra in explicit dynamics (minutes) or a beam whose wires slip on "

@@ -54,6 +54,9 @@ struct wb_solve_settings {
     /* Settings of wires, of bundles, and of the wire in three-point bending. */
     const char *model; /* name or file */
     const char *vtk;   /* folder; NULL: none; not of wire1d */
+    /* Settings of a harness. */
+    int frames;       /* shapes of a step; 0: its end alone */
+    const char *gltf; /* file; NULL: none */
     /* Settings of bundles. */
     int bundle_model; /* WB_SOLVE_EXPLICIT or WB_SOLVE_SECTION */
     struct wb_bundle_override override;

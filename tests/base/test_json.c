@@ -73,6 +73,9 @@ static void numbers_are_as_short_as_they_can_be(void **state)
     char *const text = wb_json_format(root);
     assert_string_equal(text, "{\n  \"a\": [\n    0.1,\n    85,\n    {}\n  ],\n  \"b\": []\n}\n");
     free(text);
+    char *const line = wb_json_format_line(root);
+    assert_string_equal(line, "{\"a\": [0.1, 85, {}], \"b\": []}\n");
+    free(line);
     wb_json_destroy(root);
 }
 

@@ -67,6 +67,41 @@ PYTHON
 for array in position_mm curvature_1_m moment_N_mm torque_N_mm tension_N branch; do
     grep -aq "Name=\"$array\"" vtk/small-0003.vtu || fail "no $array in the VTK files"
 done
+# A ring of twelve points around each place, with the radius of the wire.
+python3 - vtk/small-0003.vtu plain/shapes.csv <<'PYTHON' || fail 'the VTK tubes are not around the wires'
+import csv, math, re, struct, sys
+raw = open(sys.argv[1], "rb").read()
+begin = raw.index(b"_", raw.index(b'encoding="raw"')) + 1
+begin += int(re.search(rb'Name="position_mm"[^>]*offset="(\d+)"', raw).group(1))
+(size,) = struct.unpack_from("<Q", raw, begin)
+points = list(struct.iter_unpack("<3d", raw[begin + 8 : begin + 8 + size]))
+places = [row for row in csv.DictReader(open(sys.argv[2])) if row["step"] == "3"]
+assert len(points) == 12 * len(places)
+for i, row in enumerate(places):
+    centre = [float(row[k]) for k in ("x_mm", "y_mm", "z_mm")]
+    radius = 2.3 if row["branch"] == "B1" else 0.7
+    for k in range(12):
+        point, opposite = points[12 * i + k], points[12 * i + (k + 6) % 12]
+        assert math.isclose(math.dist(point, centre), radius, rel_tol=1e-9)
+        assert math.isclose(math.dist(point, opposite), 2 * radius, rel_tol=1e-9)
+PYTHON
+
+# Frames are shapes between the steps, at the same times in the table and for ParaView; the steps stay.
+"$wirebench" solve harness small --law elastic --frames 4 --vtk films -o framed --no-figure >said ||
+    fail '--frames'
+python3 - plain framed films/small.pvd <<'PYTHON' || fail 'the frames are wrong'
+import re, sys
+plain, framed = ([line.split(",", 1) for line in open(f + "/shapes.csv")] for f in sys.argv[1:3])
+times = list(dict.fromkeys(row[0] for row in framed[1:]))
+whole = {row[0] for row in plain[1:]}
+assert [row for row in framed[1:] if row[0] in whole] == plain[1:]
+for step in range(7):
+    between = [float(t) for t in times[1:] if step < float(t) < step + 1]
+    assert 1 <= len(between) <= 3 and between == sorted(between), (step, between)
+listed = re.findall('timestep="([^"]*)"', open(sys.argv[3]).read())
+assert listed == ["0"] + times[1:], (listed, times)
+PYTHON
+cmp -s plain/harness.json framed/harness.json || fail '--frames changes the results'
 
 # A properties file of `calibrate` is a wire, with unloading and a range of curvatures.
 sed "s|wire: type3|wire: $root/docs/cards/type1.yaml|" "$root/fixtures/harnesses/small.yaml" >own.yaml
@@ -84,6 +119,7 @@ ends_with() { # CODE WORDS ARGUMENTS...
 }
 ends_with 1 --force solve harness small -o out
 ends_with 1 --force solve harness small -o other --vtk vtk
+ends_with 2 '--frames needs' solve harness small --frames 3
 ends_with 0 found solve harness small -o out --force
 ends_with 2 'HARNESS.yaml' solve harness
 ends_with 1 'a wire file' solve harness "$root/fixtures/wires/type3.yaml"

@@ -1,10 +1,8 @@
 /* The engine reads our card: its chain under a force agrees with our elastic beam, with the order
  * of the midpoint rule, and is stable up to the time step stated in the card. */
-#include <mujoco/mujoco.h>
-#include <stdlib.h>
-
 #include "base/file.h"
 #include "fe/trial/cantilever.h"
+#include "tests/analysis/cards/mujoco_rest.h"
 #include "tests/analysis/cards/wires.h"
 #include "tests/own_folder.h"
 
@@ -57,64 +55,16 @@ static struct wb_card_settings settings_of(int segments)
 /* --- at rest --- */
 
 /* Residual of the springs and of a force at the tip, for the joints' angles. */
-static void find_residual(const struct engine *engine, const double force[3], double *residual)
+static void find_residual(const void *force, const mjModel *m, mjData *d, double *residual)
 {
-    const mjModel *const m = engine->model;
-    mjData *const d = engine->data;
     static double jacobian[3 * 3 * MOST];
     mj_forward(m, d);
     mj_jacSite(m, d, jacobian, NULL, 0);
     for (int i = 0; i < m->nv; i++) {
         residual[i] = d->qfrc_passive[i];
         for (int k = 0; k < 3; k++)
-            residual[i] += jacobian[k * m->nv + i] * force[k];
+            residual[i] += jacobian[k * m->nv + i] * ((const double *)force)[k];
     }
-}
-
-/* Gauss without pivoting suffices, because stiffness dominates. */
-static void eliminate(int n, double *matrix, double *right)
-{
-    for (int p = 0; p < n; p++) {
-        for (int i = p + 1; i < n; i++) {
-            const double factor = matrix[i * n + p] / matrix[p * n + p];
-            for (int j = p; j < n; j++)
-                matrix[i * n + j] -= factor * matrix[p * n + j];
-            right[i] -= factor * right[p];
-        }
-    }
-    for (int i = n - 1; i >= 0; i--) {
-        for (int j = i + 1; j < n; j++)
-            right[i] -= matrix[i * n + j] * right[j];
-        right[i] /= matrix[i * n + i];
-    }
-}
-
-/* Newton's method with differences of the engine's own forces. */
-static void solve_equilibrium(const struct engine *engine, const double force[3])
-{
-    const int n = engine->model->nv;
-    static double matrix[9 * MOST * MOST], residual[3 * MOST], moved[3 * MOST];
-    double largest = 1.0;
-    for (int iteration = 0; iteration < 30 && largest > 1e-12; iteration++) {
-        find_residual(engine, force, residual);
-        for (int j = 0; j < n; j++) {
-            double *const q = &engine->data->qpos[j];
-            const double angle = *q, step = 1e-7;
-            *q = angle + step;
-            find_residual(engine, force, moved);
-            *q = angle;
-            for (int i = 0; i < n; i++)
-                matrix[i * n + j] = (residual[i] - moved[i]) / step;
-        }
-        eliminate(n, matrix, residual);
-        largest = 0.0;
-        for (int i = 0; i < n; i++) {
-            engine->data->qpos[i] += residual[i];
-            largest = fmax(largest, fabs(residual[i]));
-        }
-    }
-    assert_true(largest <= 1e-12);
-    mj_forward(engine->model, engine->data);
 }
 
 /* The tip, m, of the engine's chain under a transverse force along an axis. */
@@ -130,7 +80,7 @@ static void engine_tip(int segments, double force, int axis, double tip[3])
     for (int step = 1; step <= 4; step++) {
         const double part[3] = {0.25 * step * vector[0], 0.25 * step * vector[1],
                                 0.25 * step * vector[2]};
-        solve_equilibrium(&engine, part);
+        mujoco_rest(engine.model, engine.data, 1e-12, find_residual, part);
     }
     for (int k = 0; k < 3; k++)
         tip[k] = engine.data->site_xpos[k];

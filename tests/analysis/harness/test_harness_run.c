@@ -291,6 +291,58 @@ static void release_that_does_not_end_leaves_the_state_before(void **unused)
     release_set(&set, plan);
 }
 
+/* The results are those without frames; frames lie between the steps, in order. */
+static void frames_are_shapes_along_each_step(void **unused)
+{
+    (void)unused;
+    struct wb_harness_settings with = yielding;
+    struct wb_harness_result_set set, plain;
+    with.frames = 4;
+    struct wb_harness_plan *const plan = compute_set(&set, 0, NULL, &with);
+    struct wb_harness_plan *const other = compute_set(&plain, 0, NULL, &yielding);
+    assert_int_equal(plain.n_shapes, 6);
+    assert_true(set.n_shapes > 6 + 5 && set.n_shapes <= 1 + 5 * 4);
+    for (int i = 0, step = -1; i < set.n_shapes; i++) {
+        const struct wb_harness_shape *const shape = &set.shapes[i];
+        const bool is_end = shape->time == shape->step + 1;
+        assert_true(i == 0 ? shape->time == 0.0 : shape->time > shape[-1].time);
+        assert_true(shape->time > shape->step && shape->time <= shape->step + 1);
+        assert_close(shape->places[1].position[0], set.natural[1].position[0], 1e-3);
+        if (!is_end)
+            continue;
+        assert_int_equal(shape->step, step);
+        assert_memory_equal(shape->places, plain.shapes[++step].places,
+                            (size_t)set.n_places * sizeof *shape->places);
+    }
+    /* A frame of a move lies between the two ends of the clip's way. */
+    const struct wb_harness_shape *shape = set.shapes;
+    while (shape->time <= 2.0)
+        shape++;
+    for (int i = 0; i < set.n_places; i++) {
+        if (shape->places[i].branch == 0 && fabs(shape->places[i].s - 0.2) < 2e-3)
+            assert_close(shape->places[i].position[1], 0.02 * (shape->time - 2.0), 2e-3);
+    }
+    release_set(&set, plan);
+    release_set(&plain, other);
+}
+
+/* Across the wire, and where the branch begins upwards. */
+static void section_frame_is_kept_with_the_shape(void **unused)
+{
+    (void)unused;
+    struct wb_harness_result_set set;
+    struct wb_harness_plan *const plan = compute_set(&set, 0, NULL, &elastic);
+    assert_close(set.natural[0].up[2], 1.0, 1e-12);
+    for (int k = 0; k < set.n_shapes; k++) {
+        for (int i = 0; i < set.n_places; i++) {
+            const struct wb_harness_place *const place = &set.shapes[k].places[i];
+            assert_close(wb_vec3_dot(place->up, place->direction), 0.0, 1e-12);
+            assert_close(wb_vec3_length(place->up), 1.0, 1e-12);
+        }
+    }
+    release_set(&set, plan);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -304,6 +356,8 @@ int main(void)
         cmocka_unit_test(stops_when_asked),
         cmocka_unit_test(steps_that_are_undone_and_repeated_are_the_same_bit_for_bit),
         cmocka_unit_test(release_that_does_not_end_leaves_the_state_before),
+        cmocka_unit_test(frames_are_shapes_along_each_step),
+        cmocka_unit_test(section_frame_is_kept_with_the_shape),
     };
     return cmocka_run_group_tests(tests, begin, remove_folder);
 }

@@ -1,0 +1,43 @@
+#!/bin/bash
+# `wirebench solve harness --gltf`: the scene against the table of shapes, and what goes wrong.
+# Usage: harness-gltf.sh WIREBENCH SOURCE_ROOT PYTHON, which has NumPy.
+. "$2/tests/cli/reports.sh"
+root=$2 python=$3
+export WIREBENCH_DATA=$root
+cd "$folder" || exit 1
+
+check() { # HARNESS ARGUMENTS...
+    local name=$1
+    shift
+    "$wirebench" solve harness "$name" "$@" --no-figure -o "$name" --gltf "$name.glb" >said 2>warned ||
+        fail "$name: $(cat said warned)"
+    "$python" "$root/tests/cli/gltf.py" "$name.glb" "$name/shapes.csv" \
+        "$root/fixtures/harnesses/$name.yaml" || fail "the scene of $name is wrong"
+}
+check small --frames 5
+check door --law elastic --frames 5
+"$wirebench" info small.glb >kind && grep -q 'glTF' kind || fail "info small.glb: $(cat kind)"
+
+# The same bytes again; without steps beyond the first, and where nothing yields.
+"$wirebench" solve harness small --frames 5 --gltf again.glb >said 2>warned || fail 'again'
+cmp small.glb again.glb || fail 'the same command gives other bytes'
+grep -q 'again.glb' said || fail "the scene is not named: $(cat said)"
+sed '/^  - {m/d; /^  - {r/d; /take_off/d' "$root/fixtures/harnesses/small.yaml" >hung.yaml
+"$wirebench" solve harness hung.yaml --gltf hung.glb -o hung --no-figure >said || fail 'hang alone'
+"$python" "$root/tests/cli/gltf.py" hung.glb hung/shapes.csv hung.yaml || fail 'hung.glb is wrong'
+
+ends_with() { # CODE WORDS ARGUMENTS...
+    local code=$1 words=$2
+    shift 2
+    "$wirebench" "$@" >said 2>&1
+    local found=$?
+    [ $found -eq "$code" ] || fail "$*: exit code $found, expected $code: $(cat said)"
+    grep -qF -- "$words" said || fail "$*: '$words' is not said: $(cat said)"
+}
+ends_with 2 "'scene.gltf' does not end in .glb" solve harness small --gltf scene.gltf
+ends_with 1 "'small.glb' exists; --force" solve harness hung.yaml --gltf small.glb
+cmp -s small.glb again.glb || fail 'a rejected command writes'
+ends_with 1 'nowhere' solve harness hung.yaml --gltf nowhere/a.glb
+ends_with 0 hung.glb solve harness hung.yaml --gltf hung.glb --force
+[ -z "$(find . -name '*.glb?*')" ] || fail "parts remain: $(find . -name '*.glb?*')"
+finish 'solve harness --gltf'
