@@ -380,7 +380,7 @@ enum wb_file_kind wb_file_kind_find(const char *path)
     return found;
 }
 
-enum wb_status wb_file_kind_check(const char *path, unsigned expected)
+enum wb_status wb_file_kind_check(const char *path, uint64_t expected)
 {
     const enum wb_file_kind kind = wb_file_kind_find(path);
     struct wb_text wanted = {0}, next = {0};
@@ -398,7 +398,7 @@ enum wb_status wb_file_kind_check(const char *path, unsigned expected)
     return WB_ERR_FORMAT;
 }
 
-enum wb_status wb_file_kind_find_input(const char **name, char path[WB_PATH], unsigned expected)
+enum wb_status wb_file_kind_find_input(const char **name, char path[WB_PATH], uint64_t expected)
 {
     *name = wb_command_find(*name, path);
     return wb_file_kind_check(*name, expected);

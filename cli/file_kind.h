@@ -6,6 +6,8 @@
 #ifndef WB_CLI_FILE_KIND_H
 #define WB_CLI_FILE_KIND_H
 
+#include <stdint.h>
+
 #include "base/file.h"
 #include "base/status.h"
 #include "base/text.h"
@@ -46,7 +48,7 @@ enum wb_file_kind {
     WB_FILE_FIGURE, /* a drawing or a page */
     WB_FILE_KINDS
 };
-#define WB_FILE_BIT(kind) (1U << (kind))
+#define WB_FILE_BIT(kind) (UINT64_C(1) << (kind))
 #define WB_FILE_SPECIMENS (WB_FILE_BIT(WB_FILE_SPECIMEN) | WB_FILE_BIT(WB_FILE_TEST_PIECE))
 
 /* The kind of a file or folder. Reads what it needs of it; logs nothing. */
@@ -62,11 +64,11 @@ void wb_file_kind_append_next(struct wb_text *text, enum wb_file_kind kind, cons
 /* Fails with WB_ERR_FORMAT where the file is of a known kind that is not among `expected`, bits.
  * The message names the kind, the kinds that are expected, and the next command for this file.
  * Files of unknown kind pass: their reader says what is wrong. */
-WB_MUST_CHECK enum wb_status wb_file_kind_check(const char *path, unsigned expected);
+WB_MUST_CHECK enum wb_status wb_file_kind_check(const char *path, uint64_t expected);
 
 /* Finds a file of the command line with wb_command_find(), which may store its path in `path`, and
  * checks its kind; *name is changed to what was found. */
 WB_MUST_CHECK enum wb_status wb_file_kind_find_input(const char **name, char path[WB_PATH],
-                                                     unsigned expected);
+                                                     uint64_t expected);
 
 #endif
