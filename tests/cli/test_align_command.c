@@ -206,7 +206,7 @@ static void an_error_is_reported_once(void **state)
     expect("align -o $DIR/none", 2, "", "at least one recording");
     expect("align $DIR/whole.wbr", 2, "", "-o DATASET");
     expect("align $DIR/whole.wbr -o $DIR/none --row-rate fast", 2, "", "--row-rate");
-    expect("quicklook $DIR/whole.wbr $DIR/gap.wbr -o $DIR/none", 2, "", "one recording at a time");
+    expect("quicklook $DIR/whole.wbr $DIR/gap.wbr -o $DIR/none", 2, "", "gap.wbr");
     expect("quicklook -o $DIR/none", 2, "", "name a recording");
 }
 
