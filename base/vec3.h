@@ -41,4 +41,17 @@ static inline double wb_vec3_distance(const double *a, const double *b)
                 (a[2] - b[2]) * (a[2] - b[2]));
 }
 
+/* c = A b and c = A^T b for a matrix of 3 x 3, row-major; c is another array than b. */
+static inline void wb_vec3_turn(const double *A, const double *b, double *restrict c)
+{
+    for (int i = 0; i < 3; i++)
+        c[i] = A[3 * i] * b[0] + A[3 * i + 1] * b[1] + A[3 * i + 2] * b[2];
+}
+
+static inline void wb_vec3_turn_back(const double *A, const double *b, double *restrict c)
+{
+    for (int i = 0; i < 3; i++)
+        c[i] = A[i] * b[0] + A[3 + i] * b[1] + A[6 + i] * b[2];
+}
+
 #endif

@@ -191,13 +191,19 @@ static void add_items(struct wb_panel *panel, const struct view *view,
     for (int i = 0; i < plan->n_items; i++) {
         const struct wb_harness_item *const item = &plan->items[i];
         const struct wb_figure_style style = style_of_item(drawing, i);
-        project(view, place_of(set, places, item->branch, item->at)->position, &x, &y);
+        project(view,
+                place_of(set, places, item->branch, wb_harness_run_place(set, drawing->step, i))
+                    ->position,
+                &x, &y);
         wb_figure_add_line(panel, NULL, 1, &x, &y, &style);
         wb_harness_labels_add_mark(labels, x, y);
     }
     for (int i = 0; i < plan->n_items; i++) {
         const struct wb_harness_item *const item = &plan->items[i];
-        project(view, place_of(set, places, item->branch, item->at)->position, &x, &y);
+        project(view,
+                place_of(set, places, item->branch, wb_harness_run_place(set, drawing->step, i))
+                    ->position,
+                &x, &y);
         wb_harness_labels_put(labels, panel, x, y, item->name, false);
     }
     for (int i = 0; drawing->names_branches && i < plan->n_branches; i++) {
@@ -320,7 +326,9 @@ static void add_drops(struct wb_panel *panel, const struct view *view,
     struct path path = {0};
     for (int i = 0; i < drawing->set->plan->n_items; i++) {
         const struct wb_harness_item *const item = &drawing->set->plan->items[i];
-        const double *const at = place_of(drawing->set, places, item->branch, item->at)->position;
+        const double *const at = place_of(drawing->set, places, item->branch,
+                                          wb_harness_run_place(drawing->set, drawing->step, i))
+                                     ->position;
         const double below[3] = {at[0], at[1], view->low[2]};
         add_piece(&path, view, at, below);
     }

@@ -14,7 +14,7 @@
 
 #define WB_LOG_DOMAIN "harness"
 
-static const char *const holds[] = {"point", "axis", "all", NULL};
+static const char *const holds[] = {"point", "axis", "all", "slide", NULL};
 static const char *const steps[] = {"hang", "mount", "move", "release", "take_off", NULL};
 static const char parallel[] = "it is parallel to `up`, which must point across";
 
@@ -90,16 +90,7 @@ void wb_harness_file_rotation(const double direction[3], const double *up, const
         return;
     }
     double turn[3], q[4];
-    wb_rod_element_matrix(before, R);
-    const double axis[3] = {R[0], R[3], R[6]};
-    wb_vec3_cross(axis, direction, turn);
-    const double sine = wb_vec3_length(turn), cosine = wb_vec3_dot(axis, direction);
-    for (int k = 0; k < 3; k++) {
-        if (sine > 1e-12)
-            turn[k] *= atan2(sine, cosine) / sine;
-        else
-            turn[k] = cosine > 0.0 ? 0.0 : M_PI * R[3 * k + 1]; /* back: about its own y */
-    }
+    wb_rod_element_turn_axis(before, direction, turn);
     wb_rod_element_exponential(turn, q);
     wb_rod_element_compose(q, before, rotation);
 }
@@ -378,11 +369,14 @@ static enum wb_status read_clip(void *context, const struct wb_config_node *map)
         WB_CONFIG_TEXT("branch", branch),
         WB_CONFIG_NUMBER("at_mm", &item.at, WB_MM, 0.0, 1e6),
         WB_CONFIG_CHOICE("holds", &hold, holds),
+        WB_CONFIG_OPTIONAL_NUMBER("friction", &item.friction, 1.0, 0.0, 10.0),
         WB_CONFIG_OPTIONAL_NUMBER("most_force_N", &item.largest_force, 1.0, 1e-9, 1e9),
         WB_CONFIG_OPTIONAL_NUMBER("most_moment_N_mm", &item.largest_moment, WB_NMM, 1e-9, 1e9),
     };
     WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
     item.hold = WB_HARNESS_POINT + (enum wb_harness_hold)hold;
+    if (wb_config_find(map, "friction") && item.hold != WB_HARNESS_SLIDE)
+        return wb_config_refuse(map, "friction", "the wire slides only where `holds` is `slide`");
     item.branch = find_branch(plan, branch);
     if (item.branch < 0)
         return wb_config_refuse(map, "branch", "no branch is named '%s'", branch);
@@ -411,10 +405,19 @@ static double way_to_root(const struct wb_harness_plan *plan, int branch, double
     return way;
 }
 
-/* Length of wire between two items. */
+/* Length of wire between two items, at most; a wire may slide through a clip up to its ends. */
 static double wire_between(const struct wb_harness_plan *plan, const struct wb_harness_item *a,
                            const struct wb_harness_item *b)
 {
+    if (a->hold == WB_HARNESS_SLIDE || b->hold == WB_HARNESS_SLIDE) {
+        const struct wb_harness_item *const slides = a->hold == WB_HARNESS_SLIDE ? a : b;
+        struct wb_harness_item first = *slides, last = *slides;
+        first.hold = last.hold = WB_HARNESS_POINT;
+        first.at = 0.0;
+        last.at = plan->branches[slides->branch].length;
+        return fmax(wire_between(plan, &first, slides == a ? b : a),
+                    wire_between(plan, &last, slides == a ? b : a));
+    }
     double common = 0.0;
     for (int i = a->branch; i >= 0; i = plan->branches[i].parent) {
         double there = i == a->branch ? a->at : plan->branches[i].length;
@@ -452,7 +455,7 @@ static enum wb_status check_target(const struct wb_harness_plan *plan,
 {
     const struct wb_harness_item *const item = &plan->items[step->item];
     *key = "direction";
-    if (step->has_direction && item->hold == WB_HARNESS_POINT)
+    if (step->has_direction && (item->hold == WB_HARNESS_POINT || item->hold == WB_HARNESS_SLIDE))
         return wb_fail_to(why, WB_ERR_ARGUMENT, "%s holds a point only", item->name);
     if (step->has_direction && step->has_up && is_parallel(step->direction, step->up))
         return wb_fail_to(why, WB_ERR_ARGUMENT, "%s", parallel);

@@ -88,6 +88,7 @@ struct wb_harness_item {
     int branch; /* -1: the root */
     double at;  /* m, along the branch */
     enum wb_harness_hold hold;
+    double friction;                      /* coefficient, where the wire slides */
     double mass, centre[3];               /* kg, m; of a connector */
     double largest_force, largest_moment; /* limits, N, N m; 0: none */
 };

@@ -78,7 +78,7 @@ static const struct wb_key item_rows[] = {
     {"branch", TEXT | OPTIONAL, "branch on which it is"},
     {"at_mm", ITEM(at), "place along the branch"},
     {"holds", WB_CHOICE(struct wb_harness_item, hold), "what it holds where it is mounted",
-     .choices = "nothing|plane|point|axis|all"},
+     .choices = "nothing|plane|point|axis|all|slide"},
     {"most_force_N", ITEM(largest_force), "limit of the force; 0: none"},
     {"most_moment_N_mm", ITEM(largest_moment), "limit of the moment; 0: none"},
 };

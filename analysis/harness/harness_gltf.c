@@ -346,17 +346,19 @@ static void find_box(const struct wb_harness_result_set *set, const struct wb_ha
 
 /* The wire at an item: on the line between the places around it, with the frame of the nearer. */
 static struct wb_harness_place place_of(const struct wb_harness_result_set *set,
-                                        const struct wb_harness_place *places,
+                                        const struct wb_harness_shape *shape,
                                         const struct wb_harness_item *item)
 {
+    const struct wb_harness_place *const places = shape->places;
+    const double at = wb_harness_run_place(set, shape->step, (int)(item - set->plan->items));
     const int branch = item->branch < 0 ? 0 : item->branch;
     int i = 0;
     while (places[i].branch != branch)
         i++;
-    while (i + 2 < set->n_places && places[i + 2].branch == branch && places[i + 1].s < item->at)
+    while (i + 2 < set->n_places && places[i + 2].branch == branch && places[i + 1].s < at)
         i++;
     const struct wb_harness_place *const a = &places[i], *const b = &places[i + 1];
-    const double part = (item->at - a->s) / (b->s - a->s);
+    const double part = (at - a->s) / (b->s - a->s);
     struct wb_harness_place place = part < 0.5 ? *a : *b;
     for (int k = 0; k < 3; k++)
         place.position[k] = a->position[k] + part * (b->position[k] - a->position[k]);
@@ -369,7 +371,7 @@ static void set_pose(const struct wb_harness_result_set *set, const struct wb_ha
                      const struct wb_harness_shape *shape, const double middle[3],
                      const double *before, double position[3], double rotation[4])
 {
-    const struct wb_harness_place place = place_of(set, shape->places, item);
+    const struct wb_harness_place place = place_of(set, shape, item);
     double q[4], R[9], cosine = 0.0;
     wb_harness_file_rotation(place.direction, place.up, NULL, q);
     wb_rod_element_matrix(q, R);

@@ -55,6 +55,8 @@ static const struct wb_key force_rows[] = {
     {"force_vector_N", WB_FULL(struct wb_harness_force, force),
      "the force along the wire, across and up, in the frame of the section there"},
     {"moment_vector_N_mm", WB_FULL(struct wb_harness_force, moment), "the moment in that frame"},
+    {"slid_mm", FORCE(slid) | IF_KNOWN,
+     "length of wire that slid through the clip since its mount, towards the branch's beginning"},
     {"largest_force_N", FORCE(largest), "largest force during the step"},
     {"largest_moment_N_mm", FORCE(largest_moment), "largest moment during the step"},
     {"exceeds_force", FORCE(exceeds_force), "the limit of the force was exceeded"},
@@ -359,10 +361,13 @@ void wb_harness_output_append_table(struct wb_text *text, const struct wb_harnes
             const struct wb_harness_force *const f = &step->forces[k];
             if (!f->is_mounted)
                 continue;
+            char slid[32] = "";
+            if (isfinite(f->slid))
+                snprintf(slid, sizeof slid, "  slid %.3g mm", f->slid / WB_MM);
             wb_text_append(text,
-                           "      %-16s %8.3g N  %8.3g N mm   at most %.3g N, %.3g N mm%s%s\n",
+                           "      %-16s %8.3g N  %8.3g N mm   at most %.3g N, %.3g N mm%s%s%s\n",
                            plan->items[k].name, chopped(f->size), chopped(f->moment_size / WB_NMM),
-                           chopped(f->largest), chopped(f->largest_moment / WB_NMM),
+                           chopped(f->largest), chopped(f->largest_moment / WB_NMM), slid,
                            f->exceeds_force || f->exceeds_moment ? "  LIMIT EXCEEDED" : "",
                            wb_harness_found_is_twist_sensitive(f) ? "  depends on GJ" : "");
         }

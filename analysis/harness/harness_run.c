@@ -97,6 +97,14 @@ static int find_stations(const struct wb_harness_plan *plan, int branch, double 
     return n;
 }
 
+static int count_sliding(const struct wb_harness_plan *plan)
+{
+    int n = 0;
+    for (int i = 0; i < plan->n_items; i++)
+        n += plan->items[i].hold == WB_HARNESS_SLIDE;
+    return n;
+}
+
 static enum wb_status make_harness(struct wb_harness_run *run)
 {
     const struct wb_harness_plan *const plan = run->plan;
@@ -110,6 +118,7 @@ static enum wb_status make_harness(struct wb_harness_run *run)
         .branches = branches,
         .bodies = bodies,
         .element_length = run->settings.element_length,
+        .most_sliding = count_sliding(plan),
         .root = plan->root,
     };
     memcpy(model.gravity, plan->gravity, sizeof model.gravity);
@@ -232,7 +241,7 @@ static void take_forces(const struct wb_harness_run *run)
         if (!f->is_mounted)
             continue;
         wb_harness_reaction(run->harness, run->joints[i], reaction);
-        wb_rod_element_matrix(wb_harness_node(run->harness, run->joints[i])->rotation, R);
+        wb_rod_element_matrix(wb_harness_held_node(run->harness, run->joints[i]).rotation, R);
         for (int k = 0; k < 3; k++) {
             const double axis[3] = {R[k], R[3 + k], R[6 + k]};
             f->force[k] = wb_vec3_dot(axis, reaction);
@@ -240,6 +249,9 @@ static void take_forces(const struct wb_harness_run *run)
         }
         f->size = wb_vec3_length(f->force);
         f->moment_size = wb_vec3_length(f->moment);
+        f->slid = run->plan->items[i].hold == WB_HARNESS_SLIDE
+                      ? wb_harness_slid(run->harness, run->joints[i])
+                      : (double)NAN;
         f->soft_force = (double)NAN;
     }
 }
@@ -296,13 +308,16 @@ static void move(struct wb_harness_run *run, const struct wb_harness_step *step,
                  struct wb_harness_result *result)
 {
     const int joint = run->joints[step->item];
-    const struct wb_rod_node *const now = wb_harness_node(run->harness, joint);
-    struct wb_harness_aim aim = {.joint = joint, .target = *now};
-    if (step->kind == WB_HARNESS_MOUNT)
-        wb_harness_set_hold(run->harness, joint, run->plan->items[step->item].hold, now);
+    const struct wb_harness_item *const item = &run->plan->items[step->item];
+    const struct wb_rod_node now = wb_harness_held_node(run->harness, joint);
+    struct wb_harness_aim aim = {.joint = joint, .target = now};
+    if (step->kind == WB_HARNESS_MOUNT && item->hold == WB_HARNESS_SLIDE)
+        wb_harness_let_slide(run->harness, joint, item->friction);
+    else if (step->kind == WB_HARNESS_MOUNT)
+        wb_harness_set_hold(run->harness, joint, item->hold, &now);
     memcpy(aim.target.position, step->position, sizeof step->position);
     if (step->has_direction)
-        wb_harness_file_rotation(step->direction, step->has_up ? step->up : NULL, now->rotation,
+        wb_harness_file_rotation(step->direction, step->has_up ? step->up : NULL, now.rotation,
                                  aim.target.rotation);
     const struct wb_harness_move m = {
         .n_aims = 1, .aims = &aim, .weight = run->own.weight, .observer = observe, .context = run};
@@ -430,7 +445,7 @@ void wb_harness_run_restore(struct wb_harness_run *run, const void *state)
 
 struct wb_rod_node wb_harness_run_item(const struct wb_harness_run *run, int item)
 {
-    return *wb_harness_node(run->harness, run->joints[item]);
+    return wb_harness_held_node(run->harness, run->joints[item]);
 }
 
 int wb_harness_run_n_places(const struct wb_harness_run *run)
@@ -541,6 +556,12 @@ static void compute(struct wb_harness_result_set *set, struct wb_harness_run *ru
         set->n_steps = i + 1;
         set->converged = result->end == WB_HARNESS_CONVERGED;
     }
+}
+
+double wb_harness_run_place(const struct wb_harness_result_set *set, int step, int item)
+{
+    const double slid = step < 0 ? 0.0 : set->results[step].forces[item].slid;
+    return set->plan->items[item].at + (isfinite(slid) ? slid : 0.0);
 }
 
 static bool has_default_torsion(const struct wb_harness_plan *plan)

@@ -25,6 +25,8 @@ struct wb_harness_force {
     bool is_mounted;
     double force[3], moment[3];         /* on the wire, N, N m */
     double size, moment_size;           /* of both vectors */
+    double slid;                        /* m of wire since the mount, towards the beginning of the
+                                           branch; NAN: it does not slide there */
     double largest, largest_moment;     /* of them on the way of the step */
     double soft_force;                  /* `size` with a fifth of the default torsional stiffness;
                                            NAN: not computed */
@@ -127,6 +129,10 @@ wb_harness_run_compute(struct wb_harness_result_set *set, const struct wb_harnes
                        const struct wb_harness_settings *settings,
                        bool (*progress)(void *context, int step, double fraction), void *context);
 void wb_harness_run_release(struct wb_harness_result_set *set); /* accepts a zeroed one */
+
+/* Where along its branch an item is after a step (-1: before the first), m: beyond its place in the
+ * file where the wire slid. */
+double wb_harness_run_place(const struct wb_harness_result_set *set, int step, int item);
 
 /* GJ of a wire as computed, N m2. */
 double wb_harness_run_torsion(const struct wb_harness_plan *plan, int wire,

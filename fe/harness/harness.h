@@ -7,8 +7,10 @@
  * elements are joints: joint 0 is the root, joint e + 1 the far end of element e.
  *
  * A held joint has prescribed increments in place of rows of equilibrium: its reactions are what
- * its forces lack, and they are exact at equilibrium. The linear system is eliminated from the ends
- * of the branches to the root in blocks of 6 x 6, in a time proportional to the number of joints.
+ * its forces lack, and they are exact at equilibrium. So are those of clips through which the wire
+ * slides: unknowns beside the motions (fe/harness/harness_slide.h). The linear system is eliminated
+ * from the ends of the branches to the root in blocks of 6 x 6, in a time proportional to the
+ * number of joints; the sliding clips border it.
  *
  * The state has a trial and a committed part. A Newton iteration calls evaluate, solve and advance.
  * After convergence the trial state is committed; otherwise it is reverted. Nothing is allocated
@@ -49,6 +51,7 @@ struct wb_harness_model {
     const struct wb_harness_branch *branches;
     int n_bodies;
     const struct wb_harness_body *bodies;
+    int most_sliding;        /* joints that slide at a time, at most WB_HARNESS_MOST_SLIDING */
     double gravity[3];       /* m/s2 */
     double element_length;   /* m, at most; 0: 1/100 of the length of all branches */
     struct wb_rod_node root; /* where the root is, with its rotation */
@@ -60,7 +63,8 @@ enum wb_harness_hold {
     WB_HARNESS_PLANE, /* its position along the first axis of the target's rotation */
     WB_HARNESS_POINT, /* its position */
     WB_HARNESS_AXIS,  /* its position and the direction of its axis */
-    WB_HARNESS_FIXED  /* its position and its rotation */
+    WB_HARNESS_FIXED, /* its position and its rotation */
+    WB_HARNESS_SLIDE  /* the position of the wire that slides along there, wb_harness_let_slide() */
 };
 
 /* Result of an evaluation. Moments are divided by the length of an element to compare with forces.
@@ -71,6 +75,10 @@ struct wb_harness_balance {
     int worst_joint;         /* where that is, or the end of its element */
     double farthest_hold;    /* largest distance of a held joint from its target, m */
     double farthest_turn;    /* and the largest rotation, rad */
+};
+
+enum {
+    WB_HARNESS_MOST_SLIDING = 64
 };
 
 struct wb_harness; /* opaque */
@@ -96,6 +104,15 @@ void wb_harness_turn_to(const struct wb_harness *harness, int joint, const struc
                         const struct wb_rod_node *to, double vector[3]);
 enum wb_harness_hold wb_harness_hold(const struct wb_harness *harness, int joint);
 
+/* From now on the wire slides through a clip that is at this joint, and may be anywhere on its
+ * branch later; wb_harness_set_hold() with WB_HARNESS_SLIDE moves the clip. `friction` is a
+ * coefficient. The wire can turn in the clip. At an end of the branch it is stopped. */
+void wb_harness_let_slide(struct wb_harness *harness, int joint, double friction);
+/* Length of the branch that moved through the clip since then, towards its beginning, m. */
+double wb_harness_slid(const struct wb_harness *harness, int joint);
+/* The place of the wire that the hold of a joint holds: the joint, or what is in a sliding clip. */
+struct wb_rod_node wb_harness_held_node(const struct wb_harness *harness, int joint);
+
 /* Dead force and moment on a joint, in space, N, N m; 0 after creation. */
 void wb_harness_set_load(struct wb_harness *harness, int joint, const double load[6]);
 void wb_harness_load(const struct wb_harness *harness, int joint, double load[6]);
@@ -108,11 +125,17 @@ void wb_harness_set_drag(struct wb_harness *harness, double drag, double carried
 void wb_harness_evaluate(struct wb_harness *harness, double weight,
                          struct wb_harness_balance *balance);
 
+/* Lets wires move on, or stops them, that are at an end of their branch in a sliding clip, as the
+ * trial state last evaluated asks for. Returns how many clips it changed; above 0 the state must be
+ * evaluated again. */
+int wb_harness_adapt(struct wb_harness *harness);
+
 /* Computes Newton's increment of the trial state last evaluated. */
 void wb_harness_solve(struct wb_harness *harness);
 
 /* Number of negative eigenvalues of the last solution's stiffness of all that is not held; 0: the
- * equilibrium is stable. */
+ * equilibrium is stable. With friction, which makes the stiffness unsymmetric, 1 where that number
+ * is odd: where a path loses its stability. */
 int wb_harness_negative(const struct wb_harness *harness);
 
 /* Moves the trial state by the increment. If a joint would rotate by more than `most_rotation`
@@ -164,7 +187,7 @@ double wb_harness_elastic_energy(const struct wb_harness *harness);
  * hardening. With the elastic energy it is the work that was done on the sections. */
 double wb_harness_plastic_work(const struct wb_harness *harness);
 
-/* Force and moment of a hold on its joint at the last evaluation, in space, N, N m. */
+/* Force and moment of a hold on the wire at the last evaluation, in space, N, N m. */
 void wb_harness_reaction(const struct wb_harness *harness, int joint, double reaction[6]);
 
 /* Weight of all branches and bodies, N, and its moment about the origin, of the trial state. */

@@ -15,6 +15,12 @@ static const double max_iteration_rotation = 0.5;
 /* An increment fails after this many iterations, or this many scaled-down ones. */
 static const int max_iterations = 20, max_scaled_down = 4;
 
+/* Wires begin to slide or stop in clips where the largest residual is below this part of the
+ * largest internal force; an increment fails after this many such changes, each of which begins the
+ * iterations anew. */
+static const double decides = 1e-6;
+static const int max_changes = 20;
+
 /* Largest residual over the largest internal force; distance and rotation from a hold's target over
  * the length of the harness, and in rad. */
 static const double force_tolerance = 1e-10, hold_tolerance = 1e-11;
@@ -96,7 +102,7 @@ static enum outcome iterate(struct wb_harness_solver *s, double weight, bool pas
     const double part = passing ? passing_force : force_tolerance;
     const double apart = passing ? passing_hold : hold_tolerance;
     struct wb_harness *const h = s->harness;
-    int scaled_down = 0;
+    int scaled_down = 0, changes = 0;
     for (int i = 0;; i++) {
         struct wb_harness_balance balance;
         wb_harness_evaluate(h, weight, &balance);
@@ -107,6 +113,13 @@ static enum outcome iterate(struct wb_harness_solver *s, double weight, bool pas
         result->worst_joint = balance.worst_joint;
         if (!(isfinite(balance.largest_force) && isfinite(balance.largest_residual)))
             return NOT_FINITE;
+        if (balance.largest_residual <= fmax(decides * balance.largest_force, tolerance) &&
+            wb_harness_adapt(h) > 0) {
+            if (++changes > max_changes)
+                return ITERATIONS;
+            i = scaled_down = 0;
+            wb_harness_evaluate(h, weight, &balance);
+        }
         const bool done = balance.largest_residual <= tolerance &&
                           balance.farthest_hold <= apart * s->length &&
                           balance.farthest_turn <= apart;
@@ -275,7 +288,7 @@ static void begin(struct wb_harness_solver *s, const struct wb_harness_move *mov
 {
     *result = (struct wb_harness_result){.end = WB_HARNESS_NOT_CONVERGED};
     for (int i = 0; i < move->n_aims; i++)
-        s->from[i] = *wb_harness_node(s->harness, move->aims[i].joint);
+        s->from[i] = wb_harness_held_node(s->harness, move->aims[i].joint);
     for (int i = 0; i < move->n_loads; i++)
         wb_harness_load(s->harness, move->loads[i].joint, s->from_load[i]);
 }

@@ -32,7 +32,7 @@ void wb_rod_chain_expand(struct wb_rod_chain *chain);
 /* Solves A X = B for a 6 x 6 matrix by elimination with scaled partial pivoting. Each row holds A,
  * then `columns` columns of B, which become X; A is destroyed. Not finite if singular. */
 enum {
-    WB_ROD_CHAIN_WIDTH = 20 /* doubles per row: 6 of A, at most 14 of B */
+    WB_ROD_CHAIN_WIDTH = 26 /* doubles per row: 6 of A, at most 20 of B */
 };
 void wb_rod_chain_solve(double rows[WB_ROD_CHAIN_BLOCK][WB_ROD_CHAIN_WIDTH], int columns);
 

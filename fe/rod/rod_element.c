@@ -11,19 +11,6 @@ enum {
     U = WB_ROD_ELEMENT_UNKNOWNS
 };
 
-/* c = A b and c = A^T b */
-static inline void turn(const double *A, const double *b, double *restrict c)
-{
-    for (int i = 0; i < 3; i++)
-        c[i] = A[3 * i] * b[0] + A[3 * i + 1] * b[1] + A[3 * i + 2] * b[2];
-}
-
-static inline void turn_back(const double *A, const double *b, double *restrict c)
-{
-    for (int i = 0; i < 3; i++)
-        c[i] = A[i] * b[0] + A[3 + i] * b[1] + A[6 + i] * b[2];
-}
-
 void wb_rod_element_matrix(const double q[4], double R[9])
 {
     const double w = q[0], x = q[1], y = q[2], z = q[3];
@@ -76,6 +63,21 @@ void wb_rod_element_turn_between(const double from[4], const double to[4], doubl
         vector[i] = sign * ratio * q[i + 1];
 }
 
+void wb_rod_element_turn_axis(const double from[4], const double direction[3], double vector[3])
+{
+    double R[9];
+    wb_rod_element_matrix(from, R);
+    const double axis[3] = {R[0], R[3], R[6]};
+    wb_vec3_cross(axis, direction, vector);
+    const double sine = wb_vec3_length(vector), cosine = wb_vec3_dot(axis, direction);
+    for (int k = 0; k < 3; k++) {
+        if (sine > 1e-12)
+            vector[k] *= atan2(sine, cosine) / sine;
+        else
+            vector[k] = cosine > 0.0 ? 0.0 : M_PI * R[3 * k + 1];
+    }
+}
+
 /* The line k = a + b s through the curvatures of the points. */
 static void curvature_line(const struct wb_rod_shape *shape, const struct wb_rod_strain *total,
                            double *a, double *b)
@@ -117,7 +119,7 @@ void wb_rod_element_place(const struct wb_rod_shape *shape, const struct wb_rod_
     for (int g = 0; g < POINTS; g++) {
         rotation_at(a, b, at[g], nodes[0].rotation, q);
         wb_rod_element_matrix(q, points[g].R);
-        turn(points[g].R, total[g].stretch, points[g].slope);
+        wb_vec3_turn(points[g].R, total[g].stretch, points[g].slope);
     }
     rotation_at(a, b, 0.5 * h, nodes[0].rotation, nodes[1].rotation);
     rotation_at(a, b, h, nodes[0].rotation, nodes[2].rotation);
@@ -134,8 +136,8 @@ void wb_rod_element_turn_forces(struct wb_rod_point *point, const double *shear)
     const double *force = point->section.force;
     const double N[3] = {force[0], point->shear_stiffness * shear[0],
                          point->shear_stiffness * shear[1]};
-    turn(point->R, N, point->n);
-    turn(point->R, force + 1, point->m);
+    wb_vec3_turn(point->R, N, point->n);
+    wb_vec3_turn(point->R, force + 1, point->m);
 }
 
 void wb_rod_element_add_forces(const struct wb_rod_shape *shape, int g,
@@ -187,7 +189,7 @@ static void turn_moduli(const double *R, const double *D, double *restrict C)
 {
     double RD[9];
     for (int i = 0; i < 3; i++)
-        turn_back(D, R + 3 * i, RD + 3 * i);
+        wb_vec3_turn_back(D, R + 3 * i, RD + 3 * i);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
             C[3 * i + j] =
@@ -283,6 +285,6 @@ void wb_rod_element_strain_increment(const struct wb_rod_shape *shape, int g,
     wb_vec3_cross(point->slope, spin, sheared);
     for (int k = 0; k < 3; k++)
         sheared[k] += slope[k];
-    turn_back(point->R, sheared, increment->stretch);
-    turn_back(point->R, bend, increment->curvature);
+    wb_vec3_turn_back(point->R, sheared, increment->stretch);
+    wb_vec3_turn_back(point->R, bend, increment->curvature);
 }

@@ -97,4 +97,8 @@ void wb_rod_element_compose(const double a[4], const double b[4], double c[4]);
 void wb_rod_element_exponential(const double vector[3], double q[4]);
 void wb_rod_element_turn_between(const double from[4], const double to[4], double vector[3]);
 
+/* The shortest rotation vector in space that turns the x axis of a rotation to a direction (a unit
+ * vector); where they are opposite, about the rotation's own y axis. */
+void wb_rod_element_turn_axis(const double from[4], const double direction[3], double vector[3]);
+
 #endif
