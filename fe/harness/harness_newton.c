@@ -46,18 +46,23 @@ static void hold_rows(const struct wb_harness_held *held, rows_t rows, int right
 static void solve_node(struct wb_harness *h, int node, rows_t rows, int right, int end)
 {
     const bool is_held = wb_harness_is_held(h, node);
-    struct wb_harness_held held = {.is = {false}};
-    double own[U * U];
+    struct wb_harness_held held;
+    rows_t own;
     if (is_held) {
         wb_harness_look_at_hold(h, node, &held);
         hold_rows(&held, rows, right, end);
     }
-    for (int r = 0; r < U; r++) {
-        for (int c = 0; c < U; c++)
-            own[U * r + c] = held.is[c] && r != c ? 0.0 : rows[r][c];
+    if (is_held) {
+        memcpy(own, rows, sizeof own);
+        for (int r = 0; r < U; r++) {
+            for (int c = 0; c < U; c++)
+                own[r][c] = held.is[c] && r != c ? 0.0 : rows[r][c];
+        }
     }
-    h->negative += wb_signature_negative(U, U, own);
-    h->is_odd ^= wb_signature_is_odd(U, U, own);
+    const double *const judged = is_held ? own[0] : rows[0];
+    h->negative += wb_signature_negative(U, WB_ROD_CHAIN_WIDTH, judged);
+    if (h->rubs)
+        h->is_odd ^= wb_signature_is_odd(U, WB_ROD_CHAIN_WIDTH, judged);
     wb_rod_chain_solve(rows, end - U);
     if (is_held)
         turn_columns(&held, true, rows, U, end);
