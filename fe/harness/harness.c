@@ -549,13 +549,19 @@ double wb_harness_turn(const struct wb_harness *h)
 
 /* --- results --- */
 
-struct wb_rod_node wb_harness_position(const struct wb_harness *h, int branch, double arc_length)
+int wb_harness_element_at(const struct wb_harness *h, int branch, double arc_length)
 {
     const struct wb_harness_chain *const b = &h->branches[branch];
-    const double s = fmin(fmax(arc_length, 0.0), b->length);
     int e = b->first;
-    while (e + 1 < b->first + b->n && h->elements[e + 1].begin <= s)
+    while (e + 1 < b->first + b->n && h->elements[e + 1].begin <= arc_length)
         e++;
+    return e;
+}
+
+struct wb_rod_node wb_harness_position(const struct wb_harness *h, int branch, double arc_length)
+{
+    const double s = fmin(fmax(arc_length, 0.0), h->branches[branch].length);
+    const int e = wb_harness_element_at(h, branch, s);
     const struct wb_harness_element *const element = &h->elements[e];
     const struct wb_rod_node *const node = h->placed + NODES * e;
     double N[NODES], dN[NODES];

@@ -5,18 +5,6 @@
 #include "fe/harness/harness_slide.h"
 #include "fe/harness/harness_state.h"
 
-/* Forces below this part of the largest internal force do not move a wire in a clip. */
-static const double small_force = 1e-9;
-
-static double size_of(const double *force, double lever)
-{
-    const double linear =
-        wb_harness_larger(wb_harness_larger(fabs(force[0]), fabs(force[1])), fabs(force[2]));
-    const double moment =
-        wb_harness_larger(wb_harness_larger(fabs(force[3]), fabs(force[4])), fabs(force[5]));
-    return wb_harness_larger(linear, lever * moment);
-}
-
 static void evaluate_point(struct wb_harness *h, const struct wb_harness_element *element, int g)
 {
     const struct wb_rod_strain *const at = &h->trial[g];
@@ -42,14 +30,13 @@ static void add_element(struct wb_harness *h, int e, double weight,
         evaluate_point(h, element, e * POINTS + g);
         wb_rod_element_add_forces(&element->shape, g, &h->points[e * POINTS + g], f);
     }
-    double *const to[NODES] = {h->residual[element->near], h->residual[h->n_joints + e],
-                               h->residual[e + 1]};
     for (int i = 0; i < NODES; i++) {
+        double *const to = h->residual[wb_harness_node_of(h, e, i)];
         balance->largest_force =
-            wb_harness_larger(balance->largest_force, size_of(f + U * i, h->lever));
+            wb_larger(balance->largest_force, wb_rod_element_force_size(f + U * i, h->lever));
         const double share = weight * parts[i] * element->shape.length / 6.0;
         for (int k = 0; k < U; k++)
-            to[i][k] += f[U * i + k] - (k < 3 ? share * element->weight[k] : 0.0);
+            to[k] += f[U * i + k] - (k < 3 ? share * element->weight[k] : 0.0);
     }
 }
 
@@ -77,15 +64,6 @@ static void add_drag(struct wb_harness *h)
     }
 }
 
-static void check_residual(const struct wb_harness *h, double size, int node,
-                           struct wb_harness_balance *balance)
-{
-    if (size > balance->largest_residual || size != size) {
-        balance->largest_residual = size;
-        balance->worst_joint = node < h->n_joints ? node : node - h->n_joints + 1;
-    }
-}
-
 static void check_node(const struct wb_harness *h, int node, struct wb_harness_balance *balance)
 {
     double left[U];
@@ -96,12 +74,11 @@ static void check_node(const struct wb_harness *h, int node, struct wb_harness_b
         wb_harness_turn_basis(&held, false, left);
         for (int k = 0; k < U; k++)
             left[k] = held.is[k] ? 0.0 : left[k];
-        balance->farthest_hold =
-            wb_harness_larger(balance->farthest_hold, wb_vec3_length(held.way));
-        balance->farthest_turn =
-            wb_harness_larger(balance->farthest_turn, wb_vec3_length(held.way + 3));
+        balance->farthest_hold = wb_larger(balance->farthest_hold, wb_vec3_length(held.way));
+        balance->farthest_turn = wb_larger(balance->farthest_turn, wb_vec3_length(held.way + 3));
     }
-    check_residual(h, size_of(left, h->lever), node, balance);
+    wb_harness_balance_add(balance, wb_rod_element_force_size(left, h->lever),
+                           node < h->n_joints ? node : node - h->n_joints + 1);
 }
 
 void wb_harness_evaluate(struct wb_harness *h, double weight, struct wb_harness_balance *balance)
@@ -117,20 +94,9 @@ void wb_harness_evaluate(struct wb_harness *h, double weight, struct wb_harness_
     add_bodies(h, weight);
     if (h->drag > 0.0)
         add_drag(h);
-    wb_harness_slide_add_forces(h);
+    wb_harness_slide_add_forces(h, balance);
     for (int i = 0; i < h->n_nodes; i++)
         check_node(h, i, balance);
-    for (int i = 0; i < h->n_clips; i++) {
-        double distance;
-        const double size = wb_harness_slide_unbalanced(h, &h->clips[i], &distance);
-        check_residual(h, size, h->clips[i].joint, balance);
-        balance->farthest_hold = wb_harness_larger(balance->farthest_hold, distance);
-    }
     h->weight = weight;
     h->largest_force = balance->largest_force;
-}
-
-int wb_harness_adapt(struct wb_harness *h)
-{
-    return wb_harness_slide_adapt(h, fmax(small_force * h->largest_force, h->noise));
 }

@@ -104,7 +104,7 @@ static void condense_element(struct wb_harness *h, int e, double *upper, double 
         rows[r][2 * U] = h->increment[middle][r];
         memcpy(rows[r] + 2 * U + 1, s.K[1][0] + U * r, U * sizeof(double));
     }
-    if (h->n_equations > 0) {
+    if (h->n_clips > 0) {
         add_unit(rows, end);
         end += U;
     }
@@ -113,7 +113,7 @@ static void condense_element(struct wb_harness *h, int e, double *upper, double 
     take_block(rows, 2 * U + 1, m->W1);
     for (int r = 0; r < U; r++)
         h->increment[middle][r] = rows[r][2 * U];
-    if (h->n_equations > 0) {
+    if (h->n_clips > 0) {
         struct wb_harness_compliance *const c = &h->compliance[e];
         take_block(rows, 3 * U + 1, c->middle);
         memcpy(c->near_middle, s.K[0][1], sizeof c->near_middle);
@@ -145,7 +145,7 @@ static void eliminate_joint(struct wb_harness *h, int joint, double *upper)
             memcpy(rows[r] + U, upper + U * r, U * sizeof(double));
         rows[r][2 * U] = h->increment[joint][r];
     }
-    if (h->n_equations > 0) {
+    if (h->n_clips > 0) {
         add_unit(rows, end);
         end += U;
     }
@@ -154,7 +154,7 @@ static void eliminate_joint(struct wb_harness *h, int joint, double *upper)
         take_block(rows, U, upper);
     for (int r = 0; r < U; r++)
         h->increment[joint][r] = rows[r][2 * U];
-    if (h->n_equations > 0)
+    if (h->n_clips > 0)
         take_block(rows, 2 * U + 1, h->compliance[joint > 0 ? joint - 1 : h->n_elements].far);
 }
 
@@ -265,7 +265,7 @@ static double times(const struct wb_harness *h, const struct wb_harness_equation
 /* The equations once the nodes are eliminated: n x n, and n right-hand sides. */
 static void reduce(struct wb_harness *h, double *matrix, double *right)
 {
-    const int n = h->n_equations;
+    const int n = WB_HARNESS_CLIP * h->n_clips;
     for (int c = 0; c < n; c++) {
         memset(h->vector, 0, (size_t)h->n_nodes * sizeof *h->vector);
         add_forces(h, &h->equations[c], 1.0, h->vector);
@@ -312,7 +312,7 @@ static bool is_odd(int n, const double *factor, const lapack_int *pivots)
 static void judge_stability(struct wb_harness *h, const double *matrix, double *copy,
                             lapack_int *pivots)
 {
-    const int n = h->n_equations;
+    const int n = WB_HARNESS_CLIP * h->n_clips;
     memcpy(copy, matrix, (size_t)n * (size_t)n * sizeof *copy);
     for (int i = 0; i < h->n_clips; i++) {
         const int place = WB_HARNESS_CLIP * i;
@@ -325,7 +325,7 @@ static void judge_stability(struct wb_harness *h, const double *matrix, double *
 /* Solves the equations and takes their part into the increment of the nodes. */
 static void add_border(struct wb_harness *h)
 {
-    const int n = h->n_equations;
+    const int n = WB_HARNESS_CLIP * h->n_clips;
     double *const matrix = h->system, *const right = matrix + (size_t)n * (size_t)n;
     lapack_int pivots[WB_HARNESS_CLIP * WB_HARNESS_MOST_SLIDING];
     reduce(h, matrix, right);
@@ -350,7 +350,6 @@ void wb_harness_solve(struct wb_harness *h)
     double lower[U * U];
     h->negative = 0;
     h->is_odd = h->rubs = false;
-    h->n_equations = WB_HARNESS_CLIP * h->n_clips;
     collect(h);
     memset(h->diagonal, 0, (size_t)h->n_joints * sizeof *h->diagonal);
     for (int i = 0; i < h->n_nodes; i++) {
@@ -367,12 +366,12 @@ void wb_harness_solve(struct wb_harness *h)
         eliminate_joint(h, e + 1, m->X);
         wb_rod_chain_multiply(h->diagonal[near], -1.0, lower, m->X);
         wb_rod_chain_apply(h->increment[near], -1.0, lower, h->increment[e + 1]);
-        if (h->n_equations > 0)
+        if (h->n_clips > 0)
             memcpy(h->compliance[e].near_far, lower, sizeof lower);
     }
     eliminate_joint(h, 0, NULL);
     substitute(h, h->increment);
-    if (h->n_equations > 0)
+    if (h->n_clips > 0)
         add_border(h);
     /* Friction makes the stiffness unsymmetric. */
     if (h->rubs)
@@ -390,9 +389,8 @@ static void advance_element(struct wb_harness *h, int e, double scale)
 {
     const struct wb_harness_element *const element = &h->elements[e];
     double own[NODES * U];
-    memcpy(own, h->increment[element->near], U * sizeof(double));
-    memcpy(own + U, h->increment[h->n_joints + e], U * sizeof(double));
-    memcpy(own + 2 * U, h->increment[e + 1], U * sizeof(double));
+    for (int n = 0; n < NODES; n++)
+        memcpy(own + U * n, h->increment[wb_harness_node_of(h, e, n)], U * sizeof(double));
     for (int g = 0; g < POINTS; g++) {
         struct wb_rod_strain change;
         struct wb_rod_strain *const at = &h->trial[e * POINTS + g];
@@ -435,7 +433,7 @@ double wb_harness_advance(struct wb_harness *h, double most_rotation)
 {
     double most = 0.0, spin[3];
     for (int j = 0; j < h->n_joints; j++)
-        most = wb_harness_larger(most, wb_vec3_length(h->increment[j] + 3));
+        most = wb_larger(most, wb_vec3_length(h->increment[j] + 3));
     const double scale =
         fmin(most > most_rotation ? most_rotation / most : 1.0, scale_for_clips(h));
     for (int e = 0; e < h->n_elements; e++)

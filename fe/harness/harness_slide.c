@@ -5,6 +5,9 @@
 
 #include "base/vec3.h"
 
+/* Forces below this part of the largest internal force do not move a wire on. */
+static const double small_force = 1e-9;
+
 /* What of a branch is in a clip. */
 struct inside {
     int element;
@@ -17,12 +20,9 @@ struct inside {
 static void look_inside(const struct wb_harness *h, const struct wb_harness_clip *clip,
                         struct inside *in)
 {
-    const struct wb_harness_chain *const b = &h->branches[clip->branch];
+    const int e = wb_harness_element_at(h, clip->branch, clip->now.s);
     const struct wb_rod_node at = wb_harness_position(h, clip->branch, clip->now.s);
     double R[9];
-    int e = b->first;
-    while (e + 1 < b->first + b->n && h->elements[e + 1].begin <= clip->now.s)
-        e++;
     const struct wb_rod_node *const node = &h->placed[NODES * e];
     const double length = h->elements[e].shape.length;
     in->element = e;
@@ -50,28 +50,23 @@ static double friction_of(const struct wb_harness *h, const struct wb_harness_cl
     return clip->friction * wb_harness_clip_slip(h, clip);
 }
 
-double wb_harness_slide_unbalanced(const struct wb_harness *h, const struct wb_harness_clip *clip,
-                                   double *distance)
-{
-    struct inside in;
-    look_inside(h, clip, &in);
-    *distance = wb_vec3_distance(in.position, h->joints[clip->joint].target.position);
-    return clip->now.is_at_end ? 0.0 : fabs(in.along - friction_of(h, clip) * in.size);
-}
-
-void wb_harness_slide_add_forces(struct wb_harness *h)
+void wb_harness_slide_add_forces(struct wb_harness *h, struct wb_harness_balance *balance)
 {
     for (int i = 0; i < h->n_clips; i++) {
         const struct wb_harness_clip *const clip = &h->clips[i];
         struct inside in;
         look_inside(h, clip, &in);
-        double *const to[NODES] = {h->residual[h->elements[in.element].near],
-                                   h->residual[h->n_joints + in.element],
-                                   h->residual[in.element + 1]};
         for (int n = 0; n < NODES; n++) {
+            double *const to = h->residual[wb_harness_node_of(h, in.element, n)];
             for (int k = 0; k < 3; k++)
-                to[n][k] -= in.N[n] * clip->now.force[k];
+                to[k] -= in.N[n] * clip->now.force[k];
         }
+        if (!clip->now.is_at_end)
+            wb_harness_balance_add(balance, fabs(in.along - friction_of(h, clip) * in.size),
+                                   clip->joint);
+        balance->farthest_hold =
+            wb_larger(balance->farthest_hold,
+                      wb_vec3_distance(in.position, h->joints[clip->joint].target.position));
     }
 }
 
@@ -118,11 +113,12 @@ void wb_harness_slide_equations(const struct wb_harness *h, const struct wb_harn
     }
 }
 
-/* How a clip should hold; true if that is not what it does. */
-static bool judge(const struct wb_harness *h, const struct wb_harness_clip *clip, double small,
-                  struct wb_harness_sliding *now)
+/* True if a clip's wire stops or moves on. */
+static bool adapt(const struct wb_harness *h, struct wb_harness_clip *clip)
 {
+    struct wb_harness_sliding *const now = &clip->now;
     const double length = h->branches[clip->branch].length;
+    const double small = fmax(small_force * h->largest_force, h->noise);
     struct inside in;
     if (!now->is_at_end) {
         now->is_at_end = !(now->s > 0.0 && now->s < length);
@@ -137,13 +133,10 @@ static bool judge(const struct wb_harness *h, const struct wb_harness_clip *clip
     return true;
 }
 
-int wb_harness_slide_adapt(struct wb_harness *h, double small)
+int wb_harness_adapt(struct wb_harness *h)
 {
     int changed = 0;
-    for (int i = 0; i < h->n_clips; i++) {
-        struct wb_harness_sliding wanted = h->clips[i].now;
-        changed += judge(h, &h->clips[i], small, &wanted);
-        h->clips[i].now = wanted;
-    }
+    for (int i = 0; i < h->n_clips; i++)
+        changed += adapt(h, &h->clips[i]);
     return changed;
 }

@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "fe/harness/harness.h"
+#include "fe/linear/larger.h"
 
 enum {
     POINTS = WB_ROD_ELEMENT_POINTS,
@@ -117,7 +118,6 @@ struct wb_harness {
     /* With sliding clips: (n_joints) index e of element e, the last of the root; the
      * equations beside those of the nodes (WB_HARNESS_CLIP of a clip), and their matrices. */
     struct wb_harness_compliance *compliance;
-    int n_equations;
     struct wb_harness_equation *equations;
     double (*vector)[U]; /* (n_nodes) */
     double *system;
@@ -172,10 +172,14 @@ static inline double wb_harness_clip_slip(const struct wb_harness *h,
     return fmin(fmax(slip, -1.0), 1.0);
 }
 
-/* As fmax(), but returns NaN if either argument is NaN. */
-static inline double wb_harness_larger(double a, double b)
+/* Adds an unbalanced force of a joint to a balance. */
+static inline void wb_harness_balance_add(struct wb_harness_balance *balance, double size,
+                                          int joint)
 {
-    return b > a || b != b ? b : a;
+    if (size > balance->largest_residual || size != size) {
+        balance->largest_residual = size;
+        balance->worst_joint = joint;
+    }
 }
 
 /* The drag of a node's part of the wire, over its coefficient; against rotation with half the part
@@ -184,6 +188,9 @@ static inline double wb_harness_drag_of(double width, int component)
 {
     return component < 3 ? width : 0.25 * width * width * width;
 }
+
+/* The element in which a place of a branch lies. */
+int wb_harness_element_at(const struct wb_harness *harness, int branch, double arc_length);
 
 /* Places all nodes from the strains of the trial state. */
 void wb_harness_place_nodes(struct wb_harness *harness);

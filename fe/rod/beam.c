@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "fe/linear/banded.h"
+#include "fe/linear/larger.h"
 #include "fe/rod/beam_private.h"
 #include "fe/rod/fibres.h"
 
@@ -267,15 +268,9 @@ static void subtract_load(struct wb_beam *beam, double factor)
     }
 }
 
-/* As fmax(), but returns NaN if either argument is NaN. */
-static double larger(double a, double b)
-{
-    return b > a || b != b ? b : a;
-}
-
 static double size_of(const double *force, double lever)
 {
-    return larger(larger(fabs(force[0]), fabs(force[1])), fabs(force[2]) * lever);
+    return wb_larger(wb_larger(fabs(force[0]), fabs(force[1])), fabs(force[2]) * lever);
 }
 
 void wb_beam_evaluate(struct wb_beam *beam, double load_factor, struct wb_beam_balance *balance)
@@ -309,7 +304,7 @@ void wb_beam_evaluate(struct wb_beam *beam, double load_factor, struct wb_beam_b
             wb_beam_element_add_forces(&beam->shape, g, p, f);
         }
         for (int i = 0; i < WB_BEAM_ELEMENT_NODES; i++) {
-            largest = larger(largest, size_of(f + 3 * i, lever));
+            largest = wb_larger(largest, size_of(f + 3 * i, lever));
             for (int k = 0; k < 3; k++)
                 beam->residual[2 * e + i][k] += f[3 * i + k];
         }
@@ -321,7 +316,7 @@ void wb_beam_evaluate(struct wb_beam *beam, double load_factor, struct wb_beam_b
     balance->largest_residual = 0.0;
     for (int i = 1; i < beam->n_nodes - 1; i++)
         balance->largest_residual =
-            larger(balance->largest_residual, size_of(beam->residual[i], lever));
+            wb_larger(balance->largest_residual, size_of(beam->residual[i], lever));
     memcpy(balance->tip, beam->residual[beam->n_nodes - 1], sizeof balance->tip);
 }
 
@@ -492,7 +487,7 @@ double wb_beam_advance(struct wb_beam *beam, const struct wb_beam *tangent, cons
 
     double turn = 0.0;
     for (int e = 0; e < beam->n_elements; e++)
-        turn = larger(turn, fabs(d[e][2]));
+        turn = wb_larger(turn, fabs(d[e][2]));
     const double scale = turn > most_rotation ? most_rotation / turn : 1.0;
 
     for (int e = 0; e < beam->n_elements; e++) {
@@ -513,7 +508,7 @@ double wb_beam_advance_nodes(struct wb_beam *beam, const double (*increment)[3],
 {
     double turn = 0.0;
     for (int i = 0; i < beam->n_nodes; i++)
-        turn = larger(turn, fabs(increment[i][2]));
+        turn = wb_larger(turn, fabs(increment[i][2]));
     const double scale = turn > most_rotation ? most_rotation / turn : 1.0;
 
     beam->trial.nodes[0].x += scale * increment[0][0];

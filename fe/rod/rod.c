@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "fe/linear/larger.h"
 #include "fe/linear/rod_chain.h"
 #include "fe/linear/signature.h"
 #include "fe/rod/rod_private.h"
@@ -206,19 +207,6 @@ static void subtract_load(struct wb_rod *rod, double factor)
     }
 }
 
-/* As fmax(), but returns NaN if either argument is NaN. */
-static double larger(double a, double b)
-{
-    return b > a || b != b ? b : a;
-}
-
-static double size_of(const double *force, double lever)
-{
-    const double linear = larger(larger(fabs(force[0]), fabs(force[1])), fabs(force[2]));
-    const double moment = larger(larger(fabs(force[3]), fabs(force[4])), fabs(force[5]));
-    return larger(linear, lever * moment);
-}
-
 static void section_strain(const struct wb_rod_strain *at, double *strain)
 {
     strain[0] = at->stretch[0];
@@ -253,7 +241,8 @@ void wb_rod_evaluate(struct wb_rod *rod, double load_factor, struct wb_rod_balan
             wb_rod_element_add_forces(&rod->shape, g, &rod->points[at], f);
         }
         for (int i = 0; i < NODES; i++) {
-            balance->largest_force = larger(balance->largest_force, size_of(f + U * i, lever));
+            balance->largest_force =
+                wb_larger(balance->largest_force, wb_rod_element_force_size(f + U * i, lever));
             for (int k = 0; k < U; k++)
                 rod->residual[2 * e + i][k] += f[U * i + k];
         }
@@ -261,7 +250,7 @@ void wb_rod_evaluate(struct wb_rod *rod, double load_factor, struct wb_rod_balan
     subtract_load(rod, load_factor);
 
     for (int i = 1; i < rod->n_nodes - 1; i++) {
-        const double size = size_of(rod->residual[i], lever);
+        const double size = wb_rod_element_force_size(rod->residual[i], lever);
         if (size > balance->largest_residual || size != size) {
             balance->largest_residual = size;
             balance->worst_place = 0.5 * rod->shape.length * i;
@@ -340,7 +329,7 @@ double wb_rod_advance(struct wb_rod *rod, const double *tip, double most_rotatio
 
     double turn = 0.0;
     for (int e = 0; e < rod->n_elements; e++)
-        turn = larger(turn, sqrt(d[e][3] * d[e][3] + d[e][4] * d[e][4] + d[e][5] * d[e][5]));
+        turn = wb_larger(turn, sqrt(d[e][3] * d[e][3] + d[e][4] * d[e][4] + d[e][5] * d[e][5]));
     const double scale = turn > most_rotation ? most_rotation / turn : 1.0;
 
     for (int e = 0; e < rod->n_elements; e++) {

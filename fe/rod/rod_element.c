@@ -4,12 +4,20 @@
 #include <string.h>
 
 #include "base/vec3.h"
+#include "fe/linear/larger.h"
 
 enum {
     NODES = WB_ROD_ELEMENT_NODES,
     POINTS = WB_ROD_ELEMENT_POINTS,
     U = WB_ROD_ELEMENT_UNKNOWNS
 };
+
+double wb_rod_element_force_size(const double force[6], double lever)
+{
+    const double linear = wb_larger(wb_larger(fabs(force[0]), fabs(force[1])), fabs(force[2]));
+    const double moment = wb_larger(wb_larger(fabs(force[3]), fabs(force[4])), fabs(force[5]));
+    return wb_larger(linear, lever * moment);
+}
 
 void wb_rod_element_matrix(const double q[4], double R[9])
 {

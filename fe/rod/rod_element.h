@@ -88,6 +88,10 @@ void wb_rod_element_strain_increment(const struct wb_rod_shape *shape, int g,
                                      const struct wb_rod_point *point, const double *d,
                                      struct wb_rod_strain *increment);
 
+/* Size of a force and a moment: the largest component, moments times `lever` (1/m); NaN if one is.
+ */
+double wb_rod_element_force_size(const double force[6], double lever);
+
 /* Rotation matrix (row-major) of a unit quaternion. */
 void wb_rod_element_matrix(const double q[4], double R[9]);
 
