@@ -11,7 +11,6 @@
 
 #define WB_LOG_DOMAIN "harness"
 
-#define PLACE(member) offsetof(struct wb_harness_place, member)
 #define ITEM(member) WB_AT(struct wb_harness_item, member)
 #define BRANCH(member) WB_AT(struct wb_harness_plan_branch, member)
 
@@ -155,24 +154,6 @@ static void put_items(struct wb_json *object, const struct wb_harness_session *s
 
 static void put_shapes(struct wb_json *object, const struct wb_harness_session *session, bool all)
 {
-    static const struct {
-        const char *key;
-        size_t offset;
-        double unit;
-    } columns[] = {
-        {"s_mm", PLACE(s), WB_MM},
-        {"x_mm", PLACE(position[0]), WB_MM},
-        {"y_mm", PLACE(position[1]), WB_MM},
-        {"z_mm", PLACE(position[2]), WB_MM},
-        {"direction_x", PLACE(direction[0]), 1.0},
-        {"direction_y", PLACE(direction[1]), 1.0},
-        {"direction_z", PLACE(direction[2]), 1.0},
-        {"curvature_1_m", PLACE(curvature), 1.0},
-        {"twist_1_m", PLACE(twist), 1.0},
-        {"moment_N_mm", PLACE(moment), WB_NMM},
-        {"torque_N_mm", PLACE(torque), WB_NMM},
-        {"tension_N", PLACE(tension), 1.0},
-    };
     const struct wb_harness_plan *const plan = wb_harness_session_plan(session);
     const struct wb_harness_place *const places = wb_harness_session_state(session)->result.places;
     const int n = wb_harness_session_n_places(session);
@@ -182,13 +163,12 @@ static void put_shapes(struct wb_json *object, const struct wb_harness_session *
         for (next = first; next < n && places[next].branch == places[first].branch; next++)
             continue;
         wb_json_set_text(shape, "branch", plan->branches[places[first].branch].name);
-        for (size_t c = 0; c < (all ? WB_COUNT(columns) : 4); c++) {
-            struct wb_json *const column = wb_json_set_array(shape, columns[c].key);
+        for (int c = 0; c < (all ? WB_HARNESS_OUTPUT_COLUMNS : WB_HARNESS_OUTPUT_POSITION); c++) {
+            const struct wb_harness_output_column *const column = &wb_harness_output_columns[c];
+            struct wb_json *const values = wb_json_set_array(shape, column->key);
             for (int i = first; i < next; i++)
-                wb_json_append_number(
-                    column,
-                    *(const double *)(const void *)((const char *)&places[i] + columns[c].offset) /
-                        columns[c].unit);
+                wb_json_append_number(values, wb_harness_output_value(&places[i], column) /
+                                                  (column->shift == 3 ? WB_MM : 1.0));
         }
     }
 }

@@ -242,35 +242,49 @@ static void append_row(struct wb_text *text, const char *step, const char *name,
     wb_text_append(text, "\n");
 }
 
+#define PLACE(member) offsetof(struct wb_harness_place, member)
+
+const struct wb_harness_output_column wb_harness_output_columns[WB_HARNESS_OUTPUT_COLUMNS] = {
+    {"s_mm", PLACE(s), 3},
+    {"x_mm", PLACE(position[0]), 3},
+    {"y_mm", PLACE(position[1]), 3},
+    {"z_mm", PLACE(position[2]), 3},
+    {"direction_x", PLACE(direction[0]), 0},
+    {"direction_y", PLACE(direction[1]), 0},
+    {"direction_z", PLACE(direction[2]), 0},
+    {"curvature_1_m", PLACE(curvature), 0},
+    {"twist_1_m", PLACE(twist), 0},
+    {"moment_N_mm", PLACE(moment), 3},
+    {"torque_N_mm", PLACE(torque), 3},
+    {"tension_N", PLACE(tension), 0},
+};
+
+double wb_harness_output_value(const struct wb_harness_place *place,
+                               const struct wb_harness_output_column *column)
+{
+    return *(const double *)(const void *)((const char *)place + column->offset);
+}
+
 static void append_places(struct wb_text *text, const struct wb_harness_result_set *set,
                           const char *step, const struct wb_harness_place *places)
 {
     for (int i = 0; i < set->n_places; i++) {
-        const struct wb_harness_place *const p = &places[i];
-        const struct column columns[] = {
-            {p->s, 3},
-            {p->position[0], 3},
-            {p->position[1], 3},
-            {p->position[2], 3},
-            {p->direction[0], 0},
-            {p->direction[1], 0},
-            {p->direction[2], 0},
-            {p->curvature, 0},
-            {p->twist, 0},
-            {p->moment, 3},
-            {p->torque, 3},
-            {p->tension, 0},
-        };
-        append_row(text, step, set->plan->branches[p->branch].name, columns, WB_COUNT(columns));
+        struct column columns[WB_HARNESS_OUTPUT_COLUMNS];
+        for (int c = 0; c < WB_HARNESS_OUTPUT_COLUMNS; c++) {
+            const struct wb_harness_output_column *const column = &wb_harness_output_columns[c];
+            columns[c] =
+                (struct column){wb_harness_output_value(&places[i], column), column->shift};
+        }
+        append_row(text, step, set->plan->branches[places[i].branch].name, columns,
+                   WB_HARNESS_OUTPUT_COLUMNS);
     }
 }
 
 static enum wb_status write_shapes(const struct wb_harness_result_set *set, const char *folder)
 {
-    static const char *const names[] = {
-        "step",      "branch",      "s_mm",        "x_mm",        "y_mm",
-        "z_mm",      "direction_x", "direction_y", "direction_z", "curvature_1_m",
-        "twist_1_m", "moment_N_mm", "torque_N_mm", "tension_N"};
+    const char *names[2 + WB_HARNESS_OUTPUT_COLUMNS] = {"step", "branch"};
+    for (int c = 0; c < WB_HARNESS_OUTPUT_COLUMNS; c++)
+        names[2 + c] = wb_harness_output_columns[c].key;
     struct wb_text text = {0};
     wb_csv_table_append_header(&text, names, WB_COUNT(names));
     for (int i = 0; i < set->n_shapes; i++) {

@@ -3,6 +3,8 @@
 #ifndef WB_ANALYSIS_HARNESS_HARNESS_OUTPUT_H
 #define WB_ANALYSIS_HARNESS_HARNESS_OUTPUT_H
 
+#include <stddef.h>
+
 #include "analysis/harness/harness_run.h"
 #include "analysis/keys/keys.h"
 #include "base/json.h"
@@ -13,6 +15,21 @@
  */
 extern const struct wb_keys wb_harness_output_keys, wb_harness_output_result_keys,
     wb_harness_output_step_keys;
+
+/* Values of a place of a shape, in the units of its keys. */
+enum {
+    WB_HARNESS_OUTPUT_COLUMNS = 12,
+    WB_HARNESS_OUTPUT_POSITION = 4 /* the first ones: place along the branch, position */
+};
+extern const struct wb_harness_output_column {
+    const char *key;
+    size_t offset; /* in struct wb_harness_place */
+    int shift;     /* decimal digits from SI units to those of the key */
+} wb_harness_output_columns[WB_HARNESS_OUTPUT_COLUMNS];
+
+/* The value in SI units. */
+double wb_harness_output_value(const struct wb_harness_place *place,
+                               const struct wb_harness_output_column *column);
 
 /* Members of harness.json into an object; the same without program and kind of file. */
 void wb_harness_output_put(struct wb_json *object, const struct wb_harness_result_set *set);

@@ -15,7 +15,8 @@
 #define CURVE_HEIGHT 145.0
 
 enum {
-    MOST_NAMES = 16 /* on a y axis */
+    MOST_NAMES = 16, /* on a y axis */
+    FIGURE_NAME = 64
 };
 
 static int count_steps(const void *context)
@@ -73,14 +74,22 @@ static void append_step_name(struct wb_text *text, const struct wb_figures_item 
     wb_text_append_escaped(text, results->campaign->plan->steps[item->index].name);
 }
 
+/* The drawing of a step, the name of its figure, and the beginning of the caption. */
+static void begin_step(struct wb_figures_item *item, struct wb_harness_drawing *drawing,
+                       char name[FIGURE_NAME], const char *suffix)
+{
+    const struct wb_harnesses_results *const results = item->results;
+    snprintf(name, FIGURE_NAME, "step-%d%s", item->index + 1, suffix);
+    wb_harness_drawing_of_step(drawing, &results->set, item->index);
+    append_step_name(&item->caption, item);
+}
+
 static enum wb_status draw_step(struct wb_figures_item *item)
 {
     const struct wb_harnesses_results *const results = item->results;
     struct wb_harness_drawing drawing;
-    char name[64];
-    snprintf(name, sizeof name, "step-%d", item->index + 1);
-    wb_harness_drawing_of_step(&drawing, &results->set, item->index);
-    append_step_name(&item->caption, item);
+    char name[FIGURE_NAME];
+    begin_step(item, &drawing, name, "");
     wb_text_append(&item->caption,
                    ". Line: the shape after it. Dashed: %s. Marks: diamond root, squares "
                    "connectors, circles clips; pale ones are free%s.",
@@ -91,12 +100,9 @@ static enum wb_status draw_step(struct wb_figures_item *item)
 
 static enum wb_status draw_step_perspective(struct wb_figures_item *item)
 {
-    const struct wb_harnesses_results *const results = item->results;
     struct wb_harness_drawing drawing;
-    char name[64];
-    snprintf(name, sizeof name, "step-%d-perspective", item->index + 1);
-    wb_harness_drawing_of_step(&drawing, &results->set, item->index);
-    append_step_name(&item->caption, item);
+    char name[FIGURE_NAME];
+    begin_step(item, &drawing, name, "-perspective");
     wb_text_append(&item->caption, ", in perspective, with the shadow on a floor.");
     return draw_perspective(&item->figure, name, &drawing, WB_PDF_HALF_WIDTH);
 }
