@@ -26,14 +26,6 @@ sed '/^  - {m/d; /^  - {r/d; /take_off/d' "$root/fixtures/harnesses/small.yaml" 
 "$wirebench" solve harness hung.yaml --gltf hung.glb -o hung --no-figure >said || fail 'hang alone'
 "$python" "$root/tests/cli/gltf.py" hung.glb hung/shapes.csv hung.yaml || fail 'hung.glb is wrong'
 
-ends_with() { # CODE WORDS ARGUMENTS...
-    local code=$1 words=$2
-    shift 2
-    "$wirebench" "$@" >said 2>&1
-    local found=$?
-    [ $found -eq "$code" ] || fail "$*: exit code $found, expected $code: $(cat said)"
-    grep -qF -- "$words" said || fail "$*: '$words' is not said: $(cat said)"
-}
 ends_with 2 "'scene.gltf' does not end in .glb" solve harness small --gltf scene.gltf
 ends_with 1 "'small.glb' exists; --force" solve harness hung.yaml --gltf small.glb
 cmp -s small.glb again.glb || fail 'a rejected command writes'

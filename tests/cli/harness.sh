@@ -109,14 +109,6 @@ sed "s|wire: type3|wire: $root/docs/cards/type1.yaml|" "$root/fixtures/harnesses
 grep -q 'only: trunk (bundle-7.yaml);' warned || fail "a calibrated wire is warned of: $(cat warned)"
 grep -q 'B[23].* bent beyond the calibration' said || fail "the range is not named: $(cat said)"
 
-ends_with() { # CODE WORDS ARGUMENTS...
-    local code=$1 words=$2
-    shift 2
-    "$wirebench" "$@" >said 2>&1
-    local found=$?
-    [ $found -eq "$code" ] || fail "$*: exit code $found, expected $code: $(cat said)"
-    grep -qF -- "$words" said || fail "$*: '$words' is not said: $(cat said)"
-}
 ends_with 1 --force solve harness small -o out
 ends_with 1 --force solve harness small -o other --vtk vtk
 ends_with 2 '--frames needs' solve harness small --frames 3
