@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "fe/harness/harness_contact.h"
 #include "fe/harness/harness_state.h"
 
 #define WB_LOG_DOMAIN "harness"
@@ -32,6 +33,8 @@ static enum wb_status check_branch(const struct wb_harness_model *model, int i)
                        b->length);
     if (!(isfinite(b->mass) && b->mass >= 0.0))
         return wb_fail(WB_ERR_ARGUMENT, "branch %d: mass %g kg/m: expected 0 or more", i, b->mass);
+    if (!(isfinite(b->radius) && b->radius >= 0.0))
+        return wb_fail(WB_ERR_ARGUMENT, "branch %d: radius %g m: expected 0 or more", i, b->radius);
     double before = 0.0;
     for (int k = 0; k < b->n_stations; k++) {
         if (!(b->stations[k] > before && b->stations[k] < b->length))
@@ -60,6 +63,8 @@ static enum wb_status check_model(const struct wb_harness_model *model)
     if (model->most_sliding < 0 || model->most_sliding > WB_HARNESS_MOST_SLIDING)
         return wb_fail(WB_ERR_ARGUMENT, "%d sliding clips: expected at most %d",
                        model->most_sliding, WB_HARNESS_MOST_SLIDING);
+    for (int i = 0; i < model->n_obstacles; i++)
+        WB_TRY(wb_obstacle_check(&model->obstacles[i]));
     const double *const g = model->gravity;
     if (!(isfinite(g[0]) && isfinite(g[1]) && isfinite(g[2])))
         return wb_fail(WB_ERR_ARGUMENT, "gravity (%g, %g, %g) m/s2 is not finite", g[0], g[1],
@@ -102,6 +107,14 @@ static double count_elements(const struct wb_harness_model *model)
     return n;
 }
 
+/* So much stiffer than an element that the gaps close in few iterations, and not so much that the
+ * other forces are rounded. */
+static double contact_stiffness(const struct wb_law_section *section, double length)
+{
+    const struct wb_law_section_stiffness k = wb_law_section_stiffness(section);
+    return fmin(24.0 * k.bending / pow(length, 3.0), k.axial / length);
+}
+
 static void add_piece(struct wb_harness *h, const struct wb_harness_model *model, int branch,
                       int piece)
 {
@@ -121,6 +134,8 @@ static void add_piece(struct wb_harness *h, const struct wb_harness_model *model
             .section = b->section,
             .history = h->history_size,
             .row = wb_law_section_history_size(b->section),
+            .radius = b->radius,
+            .contact_stiffness = contact_stiffness(b->section, length / n),
         };
         wb_rod_shape_init(&element->shape, length / n);
         for (int k = 0; k < 3; k++)
@@ -178,6 +193,19 @@ static void take_border_memory(struct wb_harness *h)
     h->system = wb_memory_take(&h->memory, 2 * most * (most + 1), sizeof *h->system);
 }
 
+static void take_contact_memory(struct wb_harness *h)
+{
+    const size_t most = (size_t)h->most_contacts;
+    if (most == 0)
+        return;
+    h->obstacles = wb_memory_take(&h->memory, (size_t)h->n_obstacles, sizeof *h->obstacles);
+    h->now.touch = wb_memory_take(&h->memory, most, sizeof *h->now.touch);
+    h->committed_touches.touch = wb_memory_take(&h->memory, most, sizeof *h->now.touch);
+    h->contacts = wb_memory_take(&h->memory, most, sizeof *h->contacts);
+    h->origin = wb_memory_take(&h->memory, (size_t)h->n_points, sizeof *h->origin);
+    h->first_contact = wb_memory_take(&h->memory, (size_t)h->n_joints, sizeof *h->first_contact);
+}
+
 static void take_state_memory(struct wb_harness *h)
 {
     const size_t elements = (size_t)h->n_elements, points = (size_t)h->n_points;
@@ -200,6 +228,7 @@ static void take_state_memory(struct wb_harness *h)
     h->diagonal = wb_memory_take(m, joints, sizeof *h->diagonal);
     h->eliminated = wb_memory_take(m, elements, sizeof *h->eliminated);
     take_border_memory(h);
+    take_contact_memory(h);
 }
 
 /* --- mesh and holds --- */
@@ -301,6 +330,8 @@ enum wb_status wb_harness_create(struct wb_harness **out, const struct wb_harnes
     h->n_joints = h->n_elements + 1;
     h->n_nodes = h->n_joints + h->n_elements;
     h->most_clips = model->most_sliding;
+    h->n_obstacles = model->n_obstacles;
+    h->most_contacts = h->n_obstacles > 0 ? WB_HARNESS_PLACES * h->n_elements : 0;
     h->n_points = POINTS * h->n_elements;
     h->lever = 1.0 / element_length(model);
     memcpy(h->gravity, model->gravity, sizeof h->gravity);
@@ -320,10 +351,13 @@ enum wb_status wb_harness_create(struct wb_harness **out, const struct wb_harnes
     for (int i = 0; i < h->n_bodies; i++)
         h->bodies[i] = model->bodies[i];
     take_state_memory(h);
+    for (int i = 0; i < h->n_obstacles; i++)
+        h->obstacles[i] = model->obstacles[i];
     if (!set_natural_shape(h, model)) {
         wb_harness_destroy(h);
         return wb_fail(WB_ERR_ARGUMENT, "a natural curvature is not finite");
     }
+    wb_harness_contact_revert(h);
     h->joints[0].hold = WB_HARNESS_FIXED;
     h->joints[0].target = h->root = h->committed_root = h->earlier_root = model->root;
     wb_harness_place_nodes(h);
@@ -393,6 +427,7 @@ void wb_harness_revert(struct wb_harness *h)
     copy_strains(h, h->trial, h->committed);
     for (int i = 0; i < h->n_clips; i++)
         h->clips[i].now = h->clips[i].committed;
+    wb_harness_contact_revert(h);
     h->root = h->committed_root;
     wb_harness_place_nodes(h);
 }
@@ -416,6 +451,7 @@ void wb_harness_extrapolate(struct wb_harness *h, double ratio)
         for (int k = 0; k < 3; k++)
             h->clips[i].now.force[k] += ratio * (is->force[k] - was->force[k]);
     }
+    wb_harness_contact_revert(h);
     double spin[3];
     h->root = h->committed_root;
     wb_rod_element_turn_between(h->earlier_root.rotation, h->committed_root.rotation, spin);
@@ -468,6 +504,7 @@ void wb_harness_commit(struct wb_harness *h)
         h->clips[i].earlier = h->clips[i].committed;
         h->clips[i].committed = h->clips[i].now;
     }
+    wb_harness_contact_commit(h);
     remember_nodes(h);
 }
 
@@ -486,6 +523,11 @@ static size_t list_parts(struct wb_harness *h, struct part parts[MAX_PARTS])
         {h->joints, joints * sizeof *h->joints},
         {&h->n_clips, sizeof h->n_clips},
         {h->clips, (size_t)h->most_clips * sizeof *h->clips},
+        {&h->now.n, sizeof h->now.n},
+        {&h->contact_factor, sizeof h->contact_factor},
+        {h->now.touch, (size_t)h->most_contacts * sizeof *h->now.touch},
+        {&h->committed_touches.n, sizeof h->now.n},
+        {h->committed_touches.touch, (size_t)h->most_contacts * sizeof *h->now.touch},
         {&h->drag, sizeof h->drag},
         {&h->carried, sizeof h->carried},
         {&h->weight, sizeof h->weight},
@@ -533,6 +575,7 @@ void wb_harness_restore(struct wb_harness *harness, const void *state)
     const size_t n = list_parts(harness, parts);
     for (size_t i = 0, at = 0; i < n; at += parts[i++].size)
         memcpy(parts[i].at, (const char *)state + at, parts[i].size);
+    wb_harness_contact_find(harness);
 }
 
 double wb_harness_turn(const struct wb_harness *h)
@@ -675,6 +718,10 @@ double wb_harness_noise(const struct wb_harness *h)
     double widest = 0.0;
     for (int e = 0; e < h->n_elements && h->drag > 0.0; e++)
         widest = fmax(widest, h->width[h->n_joints + e]);
+    double touched = 0.0;
+    for (int i = 0; i < h->n_contacts; i++)
+        touched = fmax(touched, h->elements[h->contacts[i].element].contact_stiffness);
     /* Positions are rounded. */
-    return h->noise + 4.0 * DBL_EPSILON * h->drag * widest * h->length;
+    return h->noise +
+           DBL_EPSILON * h->length * (4.0 * h->drag * widest + h->contact_factor * touched);
 }

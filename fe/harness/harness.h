@@ -8,7 +8,8 @@
  *
  * A held joint has prescribed increments in place of rows of equilibrium: its reactions are what
  * its forces lack, and they are exact at equilibrium. So are those of clips through which the wire
- * slides: unknowns beside the motions (fe/harness/harness_slide.h). The linear system is eliminated
+ * slides, unknowns beside the motions (fe/harness/harness_slide.h), and those of obstacles
+ * (fe/harness/harness_contact.h). The linear system is eliminated
  * from the ends of the branches to the root in blocks of 6 x 6, in a time proportional to the
  * number of joints; the sliding clips border it.
  *
@@ -19,9 +20,11 @@
 #ifndef WB_FE_HARNESS_HARNESS_H
 #define WB_FE_HARNESS_HARNESS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/status.h"
+#include "fe/harness/obstacle.h"
 #include "fe/rod/law_section.h"
 #include "fe/rod/rod_element.h"
 
@@ -31,6 +34,7 @@ struct wb_harness_branch {
     const struct wb_law_section *section; /* borrowed; must outlive the harness */
     double length;                        /* m */
     double mass;                          /* kg/m */
+    double radius;                        /* of its surface, which touches obstacles, m */
     /* Stress-free curvature (twist, ky, kz), 1/m; NULL: straight. Called only during creation. */
     void (*natural_curvature)(void *context, double arc_length, double curvature[3]);
     void *curvature_context;
@@ -51,6 +55,8 @@ struct wb_harness_model {
     const struct wb_harness_branch *branches;
     int n_bodies;
     const struct wb_harness_body *bodies;
+    int n_obstacles;
+    const struct wb_obstacle *obstacles;
     int most_sliding;        /* joints that slide at a time, at most WB_HARNESS_MOST_SLIDING */
     double gravity[3];       /* m/s2 */
     double element_length;   /* m, at most; 0: 1/100 of the length of all branches */
@@ -75,6 +81,7 @@ struct wb_harness_balance {
     int worst_joint;         /* where that is, or the end of its element */
     double farthest_hold;    /* largest distance of a held joint from its target, m */
     double farthest_turn;    /* and the largest rotation, rad */
+    double farthest_contact; /* largest distance of a place that touches from its obstacle, m */
 };
 
 enum {
@@ -129,6 +136,15 @@ void wb_harness_evaluate(struct wb_harness *harness, double weight,
  * trial state last evaluated asks for. Returns how many clips it changed; above 0 the state must be
  * evaluated again. */
 int wb_harness_adapt(struct wb_harness *harness);
+
+/* Takes the forces of the places that touch an obstacle, of the trial state last evaluated, as
+ * known: fe/harness/harness_contact.h. The state must be evaluated again. */
+void wb_harness_adapt_contacts(struct wb_harness *harness);
+/* Makes obstacles softer than they are at first, before an increment that begins far from its
+ * equilibrium. False if there are none. */
+bool wb_harness_soften_contacts(struct wb_harness *harness);
+/* True if a wire was inside of an obstacle on its straight way since the last commit. */
+bool wb_harness_passes_through(const struct wb_harness *harness);
 
 /* Computes Newton's increment of the trial state last evaluated. */
 void wb_harness_solve(struct wb_harness *harness);
@@ -189,6 +205,14 @@ double wb_harness_plastic_work(const struct wb_harness *harness);
 
 /* Force and moment of a hold on the wire at the last evaluation, in space, N, N m. */
 void wb_harness_reaction(const struct wb_harness *harness, int joint, double reaction[6]);
+
+/* Force of an obstacle on the wires at the last evaluation, N, and its moment about the origin. */
+void wb_harness_obstacle_force(const struct wb_harness *harness, int obstacle, double force[6]);
+
+/* How deep the trial state is in an obstacle at most, m, but not beside a held joint; and where:
+ * not set if 0. */
+double wb_harness_depth(const struct wb_harness *harness, int *obstacle, int *branch,
+                        double *arc_length);
 
 /* Weight of all branches and bodies, N, and its moment about the origin, of the trial state. */
 void wb_harness_weight(const struct wb_harness *harness, double weight[6]);

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "base/vec3.h"
+#include "fe/harness/harness_contact.h"
 #include "fe/harness/harness_slide.h"
 #include "fe/harness/harness_state.h"
 
@@ -95,6 +96,7 @@ void wb_harness_evaluate(struct wb_harness *h, double weight, struct wb_harness_
     if (h->drag > 0.0)
         add_drag(h);
     wb_harness_slide_add_forces(h, balance);
+    wb_harness_contact_add_forces(h, balance);
     for (int i = 0; i < h->n_nodes; i++)
         check_node(h, i, balance);
     h->weight = weight;

@@ -3,10 +3,15 @@
 #include <string.h>
 
 #include "base/vec3.h"
+#include "fe/harness/harness_contact.h"
 #include "fe/harness/harness_slide.h"
 #include "fe/harness/harness_state.h"
 #include "fe/linear/rod_chain.h"
 #include "fe/linear/signature.h"
+
+/* Of a line search: the work that is small, over that at its beginning; evaluations. */
+static const double search_part = 0.5;
+static const int max_searches = 12;
 
 /* Columns of the equations of a node: of its own unknowns, then right-hand sides. */
 typedef double rows_t[U][WB_ROD_CHAIN_WIDTH];
@@ -96,6 +101,7 @@ static void condense_element(struct wb_harness *h, int e, double *upper, double 
     int end = 3 * U + 1;
 
     wb_rod_element_stiffness(&element->shape, &h->points[e * POINTS], &s);
+    wb_harness_contact_add_stiffness(h, e, &s);
     for (int k = 0; k < U && h->drag > 0.0; k++)
         s.K[1][1][(U + 1) * k] += wb_harness_drag_of(h->width[middle], k) * h->drag;
     for (int r = 0; r < U; r++) {
@@ -429,13 +435,9 @@ static void advance_unknowns(struct wb_harness *h, double scale)
 
 /* The increment changes strains and moves the root; positions and rotations follow from them, for
  * the reasons given in beam.c. */
-double wb_harness_advance(struct wb_harness *h, double most_rotation)
+static void move(struct wb_harness *h, double scale)
 {
-    double most = 0.0, spin[3];
-    for (int j = 0; j < h->n_joints; j++)
-        most = wb_larger(most, wb_vec3_length(h->increment[j] + 3));
-    const double scale =
-        fmin(most > most_rotation ? most_rotation / most : 1.0, scale_for_clips(h));
+    double spin[3];
     for (int e = 0; e < h->n_elements; e++)
         advance_element(h, e, scale);
     for (int k = 0; k < 3; k++) {
@@ -445,5 +447,98 @@ double wb_harness_advance(struct wb_harness *h, double most_rotation)
     wb_harness_turn_root(h, spin);
     wb_harness_place_nodes(h);
     advance_unknowns(h, scale);
+}
+
+/* --- line search --- */
+
+/* The work of the unbalanced forces along the increment; below 0 as long as it relaxes them, 0
+ * while a hold moves. */
+static double work(const struct wb_harness *h)
+{
+    double sum = 0.0;
+    for (int node = 0; node < h->n_nodes; node++) {
+        double way[U], force[U];
+        memcpy(way, h->increment[node], sizeof way);
+        memcpy(force, h->residual[node], sizeof force);
+        if (wb_harness_is_held(h, node)) {
+            struct wb_harness_held held;
+            wb_harness_look_at_hold(h, node, &held);
+            wb_harness_turn_basis(&held, false, way);
+            wb_harness_turn_basis(&held, false, force);
+            for (int k = 0; k < U; k++) {
+                if (held.is[k] && fabs(way[k]) > 1e-9)
+                    return 0.0;
+                force[k] = held.is[k] ? 0.0 : force[k];
+            }
+        }
+        for (int k = 0; k < U; k++)
+            sum += way[k] * force[k];
+    }
+    return sum;
+}
+
+static void keep_origin(struct wb_harness *h)
+{
+    memcpy(h->origin, h->trial, (size_t)h->n_points * sizeof *h->origin);
+    h->origin_root = h->root;
+    for (int i = 0; i < h->n_clips; i++)
+        h->clips[i].origin = h->clips[i].now;
+}
+
+static void move_from_origin(struct wb_harness *h, double scale)
+{
+    memcpy(h->trial, h->origin, (size_t)h->n_points * sizeof *h->origin);
+    h->root = h->origin_root;
+    for (int i = 0; i < h->n_clips; i++)
+        h->clips[i].now = h->clips[i].origin;
+    wb_harness_place_nodes(h);
+    move(h, scale);
+}
+
+/* Moves by the part of the increment at which the work of the unbalanced forces is small: beyond
+ * it, places that touched or stuck on the way push back. */
+static void search(struct wb_harness *h, double scale)
+{
+    struct wb_harness_balance balance;
+    double low = 0.0, high = scale, work_low = work(h);
+    const double enough = search_part * fabs(work_low);
+    keep_origin(h);
+    move(h, scale);
+    if (!(work_low < 0.0))
+        return;
+    wb_harness_evaluate(h, h->weight, &balance);
+    double work_high = work(h), here = fmax(work_high, 0.0);
+    for (int i = 0; i < max_searches && fabs(here) > enough; i++) {
+        const double part = fmin(fmax(work_low / (work_low - work_high), 0.05), 0.95);
+        const double at = low + part * (high - low);
+        move_from_origin(h, at);
+        wb_harness_evaluate(h, h->weight, &balance);
+        here = work(h);
+        /* The other end counts half, so that it moves, too. */
+        if (here < 0.0) {
+            low = at;
+            work_low = here;
+            work_high *= 0.5;
+        } else {
+            high = at;
+            work_high = here;
+            work_low *= 0.5;
+        }
+    }
+}
+
+double wb_harness_advance(struct wb_harness *h, double most_rotation)
+{
+    double most = 0.0;
+    for (int j = 0; j < h->n_joints; j++)
+        most = wb_larger(most, wb_vec3_length(h->increment[j] + 3));
+    const double scale =
+        fmin(most > most_rotation ? most_rotation / most : 1.0, scale_for_clips(h));
+    if (h->n_obstacles == 0) {
+        move(h, scale);
+    } else {
+        wb_harness_contact_advance(h);
+        search(h, scale);
+    }
     return scale;
 }

@@ -1,4 +1,5 @@
 #include "fe/harness/harness_solver.h"
+#include "fe/harness/harness_contact.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,12 +21,15 @@ static const int max_iterations = 20, max_scaled_down = 4;
  * iterations anew. */
 static const double decides = 1e-6;
 static const int max_changes = 20;
+/* The forces of places that touch are taken as known where the largest residual is below this part
+ * of the largest internal force. */
+static const double knows = 1e-3;
 
 /* Largest residual over the largest internal force; distance and rotation from a hold's target over
  * the length of the harness, and in rad. */
-static const double force_tolerance = 1e-10, hold_tolerance = 1e-11;
+static const double force_tolerance = 1e-10, hold_tolerance = 1e-11, contact_tolerance = 1e-9;
 /* The same for states on the way of a motion. */
-static const double passing_force = 1e-6, passing_hold = 1e-8;
+static const double passing_force = 1e-6, passing_hold = 1e-8, passing_contact = 1e-6;
 
 /* Smallest increment as a fraction of the move. */
 static const double smallest_increment = 1e-4;
@@ -48,6 +52,7 @@ enum outcome {
     ITERATIONS,
     NOT_FINITE,
     TURNED,   /* a joint rotated farther than an increment may */
+    PASSED,   /* a wire passed through an obstacle */
     UNSTABLE, /* the equilibrium is unstable */
     STOPPED   /* by the observer */
 };
@@ -58,6 +63,7 @@ struct wb_harness_solver {
     double length;            /* of all branches, m */
     double stiffest, softest; /* stiffness of an element and of the whole harness, N/m2 */
     double weight;            /* of the last equilibrium */
+    int iterations;           /* of the last increment, since it was changed what touches */
     struct wb_rod_node *from, *before, *start; /* (joints) */
     double (*from_load)[6];                    /* (joints) */
     void *rest;                                /* state of the harness where a stable path ends */
@@ -101,6 +107,7 @@ static enum outcome iterate(struct wb_harness_solver *s, double weight, bool pas
 {
     const double part = passing ? passing_force : force_tolerance;
     const double apart = passing ? passing_hold : hold_tolerance;
+    const double gap = passing ? passing_contact : contact_tolerance;
     struct wb_harness *const h = s->harness;
     int scaled_down = 0, changes = 0;
     for (int i = 0;; i++) {
@@ -120,15 +127,29 @@ static enum outcome iterate(struct wb_harness_solver *s, double weight, bool pas
             i = scaled_down = 0;
             wb_harness_evaluate(h, weight, &balance);
         }
-        const bool done = balance.largest_residual <= tolerance &&
+        const bool touches = balance.farthest_contact <= gap * s->length;
+        if (!touches &&
+            balance.largest_residual <= fmax(knows * balance.largest_force, tolerance)) {
+            if (wb_harness_turn(h) > 2.0 * s->most_rotation)
+                return TURNED;
+            if (++changes > max_changes)
+                return ITERATIONS;
+            i = scaled_down = 0;
+            wb_harness_adapt_contacts(h);
+            wb_harness_evaluate(h, weight, &balance);
+        }
+        const bool done = touches && balance.largest_residual <= tolerance &&
                           balance.farthest_hold <= apart * s->length &&
                           balance.farthest_turn <= apart;
         if (!(done && passing && i > 0))
             wb_harness_solve(h);
+        if (done && wb_harness_negative(h) > 0)
+            return UNSTABLE;
         if (done)
-            return wb_harness_negative(h) > 0              ? UNSTABLE
-                   : wb_harness_turn(h) > s->most_rotation ? TURNED
-                                                           : EQUILIBRIUM;
+            return wb_harness_turn(h) > s->most_rotation ? TURNED
+                   : wb_harness_passes_through(h)        ? PASSED
+                                                         : EQUILIBRIUM;
+        s->iterations = i + 1;
         if (i == max_iterations)
             return ITERATIONS;
         result->iterations++;
@@ -278,6 +299,8 @@ static const char *words_for(enum outcome outcome)
         return "the equilibrium is unstable";
     case TURNED:
         return "a joint turns too far in the smallest increment";
+    case PASSED:
+        return "a wire passes through an obstacle in the smallest increment";
     default:
         return "Newton's method does not converge";
     }
@@ -316,10 +339,14 @@ void wb_harness_solver_move(struct wb_harness_solver *s, const struct wb_harness
             wb_harness_extrapolate(h, (next - done) / last);
         else
             wb_harness_revert(h);
-        const int before = result->iterations;
         double growth_now = max_growth;
         remember(s, s->before);
         enum outcome outcome = iterate(s, weight, false, result);
+        if (outcome == ITERATIONS) {
+            wb_harness_revert(h);
+            if (wb_harness_soften_contacts(h))
+                outcome = iterate(s, weight, false, result);
+        }
         if (outcome == EQUILIBRIUM) {
             if (last > 0.0)
                 growth_now = next_size(s);
@@ -354,8 +381,7 @@ void wb_harness_solver_move(struct wb_harness_solver *s, const struct wb_harness
             result->end = WB_HARNESS_STOPPED;
             break;
         }
-        const int iterations = result->iterations - before;
-        size = last * fmin(growth_now, iterations <= 6 ? max_growth : 1.0);
+        size = last * fmin(growth_now, s->iterations <= 6 ? max_growth : 1.0);
     }
     s->weight += result->fraction * (move->weight - s->weight);
     if (done >= 1.0 && result->end != WB_HARNESS_STOPPED)

@@ -17,7 +17,8 @@ enum {
     POINTS = WB_ROD_ELEMENT_POINTS,
     NODES = WB_ROD_ELEMENT_NODES,
     U = WB_ROD_ELEMENT_UNKNOWNS,
-    WB_HARNESS_CLIP = 4 /* unknowns of a sliding clip: its place along the wire, its force */
+    WB_HARNESS_CLIP = 4,  /* unknowns of a sliding clip: its place along the wire, its force */
+    WB_HARNESS_PLACES = 8 /* of an element that touch an obstacle at a time, at most */
 };
 
 /* Elimination of an element's middle node from its end nodes: d2 = w - W1 d1 - W3 d3; and of its
@@ -38,9 +39,11 @@ struct wb_harness_element {
     double begin;     /* arc length, m */
     const struct wb_law_section *section;
     struct wb_rod_shape shape;
-    size_t history;   /* where the history of its first point begins */
-    size_t row;       /* doubles of a point */
-    double weight[3]; /* N/m */
+    size_t history;           /* where the history of its first point begins */
+    size_t row;               /* doubles of a point */
+    double weight[3];         /* N/m */
+    double radius;            /* of its surface, m */
+    double contact_stiffness; /* of a place that touches, N/m */
 };
 
 struct wb_harness_chain {
@@ -75,7 +78,35 @@ struct wb_harness_sliding {
 struct wb_harness_clip {
     int joint, branch;
     double begin, friction; /* where on the branch it was mounted, m */
-    struct wb_harness_sliding now, committed, earlier;
+    struct wb_harness_sliding now, committed, earlier, origin;
+};
+
+/* What is known of a place that touches an obstacle. */
+struct wb_harness_touch {
+    int element, obstacle;
+    bool is_fixed;                /* to the wire; otherwise it is where the gap is smallest */
+    double at;                    /* where on the element friction acts, from -1 to 1 */
+    double multiplier, normal[3]; /* force along the normal, N, and normal */
+    double expected;              /* force after the iteration, N */
+    double slip[3];               /* motion along the surface over the presliding distance */
+};
+
+struct wb_harness_touches {
+    int n;
+    struct wb_harness_touch *touch; /* (most_contacts) */
+};
+
+/* The same with what was evaluated of it. */
+struct wb_harness_contact {
+    struct wb_harness_touch touch;
+    int element, obstacle;
+    double at, position[3];
+    double N[NODES], dN[NODES], rubbing[NODES]; /* shapes at the place, and where friction acts */
+    double gap, normal[3], curvature[9];        /* of the surface: gradient of the normal, 1/m */
+    double turned[3], bend;                     /* of the gap by the place: see harness_contact.c */
+    double force;                               /* along the normal, N */
+    double rate;                                /* derivative of the slip by the motion, 1/m */
+    bool slips;
 };
 
 /* What of a point's section may yield: axial strain and bending. */
@@ -85,7 +116,7 @@ struct wb_harness_yielding {
 
 struct wb_harness {
     int n_branches, n_elements, n_joints, n_nodes, n_points;
-    int n_bodies, n_clips, most_clips;
+    int n_bodies, n_clips, most_clips, n_obstacles, n_contacts, most_contacts;
     struct wb_harness_chain *branches;
     struct wb_harness_element *elements;
     struct wb_harness_body *bodies;
@@ -103,6 +134,8 @@ struct wb_harness {
      * relative to it. `earlier` is the state committed before `committed`. */
     struct wb_rod_strain *natural, *trial, *committed, *earlier;
     struct wb_rod_node root, committed_root, earlier_root;
+    struct wb_rod_strain *origin; /* (n_points) of a line search */
+    struct wb_rod_node origin_root;
     struct wb_harness_yielding *yielding; /* (n_points) of the committed state */
     double plastic_work;
     double *history, *trial_history;
@@ -121,6 +154,13 @@ struct wb_harness {
     struct wb_harness_equation *equations;
     double (*vector)[U]; /* (n_nodes) */
     double *system;
+    /* With obstacles: the places that touch, ascending. */
+    struct wb_obstacle *obstacles; /* (n_obstacles) */
+    struct wb_harness_touches now, committed_touches;
+    double contact_factor;               /* on the stiffness of places that touch */
+    double last_gap;                     /* largest when it was last chosen, m */
+    struct wb_harness_contact *contacts; /* (n_contacts of most_contacts) of the last evaluation */
+    int *first_contact;                  /* (n_elements + 1) */
     int negative;
     bool is_odd, rubs;       /* the number of negative eigenvalues is odd; friction acts */
     struct wb_memory memory; /* of all arrays */
@@ -156,6 +196,12 @@ static inline bool wb_harness_is_held(const struct wb_harness *h, int node)
 {
     return node < h->n_joints && h->joints[node].hold != WB_HARNESS_FREE &&
            h->joints[node].hold != WB_HARNESS_SLIDE;
+}
+
+/* Way along an obstacle over which friction grows to its limit, m. */
+static inline double wb_harness_contact_presliding(const struct wb_harness *h)
+{
+    return 1e-6 * h->length;
 }
 
 /* Way through a clip over which its friction grows to its limit, m. */
