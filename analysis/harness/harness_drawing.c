@@ -258,6 +258,116 @@ static void add_distance(struct wb_panel *panel, const struct view *view,
     wb_harness_labels_put(labels, panel, x, y, text, false);
 }
 
+/* --- obstacles --- */
+
+enum {
+    AROUND = 24 /* points of a circle */
+};
+
+static void place_in(const struct wb_obstacle *body, double x, double y, double z, double place[3])
+{
+    const double own[3] = {x, y, z};
+    double R[9];
+    wb_rod_element_matrix(body->rotation, R);
+    wb_vec3_turn(R, own, place);
+    for (int k = 0; k < 3; k++)
+        place[k] += body->place[k];
+}
+
+/* A line between two places of an obstacle's frame. */
+static void add_edge(struct path *path, const struct view *view, const struct wb_obstacle *body,
+                     const double from[3], const double to[3])
+{
+    double a[3], b[3];
+    place_in(body, from[0], from[1], from[2], a);
+    place_in(body, to[0], to[1], to[2], b);
+    add_piece(path, view, a, b);
+}
+
+/* The middle of what is shown in an obstacle's frame, and half its diagonal. */
+static double find_middle(const struct view *view, const struct wb_obstacle *body, double own[3])
+{
+    double middle[3], diagonal[3], R[9];
+    wb_rod_element_matrix(body->rotation, R);
+    for (int k = 0; k < 3; k++) {
+        middle[k] = 0.5 * (view->low[k] + view->high[k]) - body->place[k];
+        diagonal[k] = view->high[k] - view->low[k];
+    }
+    wb_vec3_turn_back(R, middle, own);
+    return 0.5 * wb_vec3_length(diagonal);
+}
+
+static void add_box_edges(struct path *path, const struct view *view,
+                          const struct wb_obstacle *body, const double low[3], const double high[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        for (int corner = 0; corner < 4; corner++) {
+            double from[3], to[3];
+            from[axis] = low[axis];
+            to[axis] = high[axis];
+            from[u] = to[u] = corner % 2 ? high[u] : low[u];
+            from[v] = to[v] = corner / 2 ? high[v] : low[v];
+            add_edge(path, view, body, from, to);
+        }
+    }
+}
+
+static void add_cylinder_edges(struct path *path, const struct view *view,
+                               const struct wb_obstacle *body, double low, double high)
+{
+    for (int i = 0; i < AROUND; i++) {
+        const double a = 2.0 * M_PI * i / AROUND, b = 2.0 * M_PI * (i + 1) / AROUND;
+        const double r = body->size[0];
+        for (int end = 0; end < 2; end++) {
+            const double x = end == 0 ? low : high;
+            add_edge(path, view, body, (const double[3]){x, r * cos(a), r * sin(a)},
+                     (const double[3]){x, r * cos(b), r * sin(b)});
+        }
+        if (i % 3 == 0)
+            add_edge(path, view, body, (const double[3]){low, r * cos(a), r * sin(a)},
+                     (const double[3]){high, r * cos(a), r * sin(a)});
+    }
+}
+
+/* A plane that a parallel view shows as an area, which would hide nothing and show nothing. */
+static bool is_face_on(const struct view *view, const struct wb_obstacle *body)
+{
+    double R[9];
+    wb_rod_element_matrix(body->rotation, R);
+    const int across = 3 - view->axes[0] - view->axes[1];
+    return body->kind == WB_OBSTACLE_PLANE && !view->is_perspective && fabs(R[3 * across]) > 0.9;
+}
+
+/* The edges of all obstacles; of what has no end the part beside the harness. */
+static void add_obstacles(struct wb_panel *panel, const struct view *view,
+                          const struct wb_harness_plan *plan, bool has_legend)
+{
+    const struct wb_figure_style style = {.colour = wb_palette_grey(), .width = 0.8};
+    struct path path = {0};
+    for (int i = 0; i < plan->n_obstacles; i++) {
+        const struct wb_obstacle *const body = &plan->obstacles[i].body;
+        double middle[3];
+        const double half = find_middle(view, body, middle);
+        if (is_face_on(view, body))
+            continue;
+        if (body->kind == WB_OBSTACLE_CYLINDER) {
+            const bool ends = isfinite(body->size[1]);
+            add_cylinder_edges(&path, view, body, ends ? -0.5 * body->size[1] : middle[0] - half,
+                               ends ? 0.5 * body->size[1] : middle[0] + half);
+            continue;
+        }
+        const bool is_box = body->kind == WB_OBSTACLE_BOX;
+        double low[3], high[3];
+        for (int k = 0; k < 3; k++) {
+            low[k] = is_box ? -0.5 * body->size[k] : k == 0 ? 0.0 : middle[k] - 0.5 * half;
+            high[k] = is_box ? 0.5 * body->size[k] : k == 0 ? 0.0 : middle[k] + 0.5 * half;
+        }
+        add_box_edges(&path, view, body, low, high);
+    }
+    put_path(&path, panel, has_legend ? "obstacle" : NULL, &style);
+}
+
 /* --- the floor of a perspective --- */
 
 static void widen(double low[3], double high[3], const double place[3])
@@ -265,6 +375,44 @@ static void widen(double low[3], double high[3], const double place[3])
     for (int k = 0; k < 3; k++) {
         low[k] = fmin(low[k], place[k]);
         high[k] = fmax(high[k], place[k]);
+    }
+}
+
+/* By the nearest point of a plane or an endless cylinder, unless it is far away. */
+static void widen_by_nearest(const struct wb_obstacle *body, double low[3], double high[3])
+{
+    double middle[3], diagonal[3], normal[3], curvature[9];
+    for (int k = 0; k < 3; k++) {
+        middle[k] = 0.5 * (low[k] + high[k]);
+        diagonal[k] = high[k] - low[k];
+    }
+    const double away = wb_obstacle_distance(body, middle, normal, curvature);
+    if (fabs(away) > wb_vec3_length(diagonal))
+        return;
+    for (int k = 0; k < 3; k++)
+        middle[k] -= away * normal[k];
+    widen(low, high, middle);
+}
+
+/* By the corners of those that have ends. */
+static void widen_by_obstacles(const struct wb_harness_plan *plan, double low[3], double high[3])
+{
+    for (int i = 0; i < plan->n_obstacles; i++) {
+        const struct wb_obstacle *const body = &plan->obstacles[i].body;
+        const bool is_box = body->kind == WB_OBSTACLE_BOX;
+        if (body->kind == WB_OBSTACLE_PLANE || !(is_box || isfinite(body->size[1]))) {
+            widen_by_nearest(body, low, high);
+            continue;
+        }
+        const double half[3] = {0.5 * body->size[!is_box],
+                                is_box ? 0.5 * body->size[1] : body->size[0],
+                                is_box ? 0.5 * body->size[2] : body->size[0]};
+        for (int corner = 0; corner < 8; corner++) {
+            double place[3];
+            place_in(body, corner & 1 ? half[0] : -half[0], corner & 2 ? half[1] : -half[1],
+                     corner & 4 ? half[2] : -half[2], place);
+            widen(low, high, place);
+        }
     }
 }
 
@@ -283,6 +431,7 @@ static void find_box(const struct wb_harness_drawing *drawing, double low[3], do
         if (plan->steps[i].kind == WB_HARNESS_MOUNT)
             widen(low, high, plan->steps[i].position);
     }
+    widen_by_obstacles(plan, low, high);
 }
 
 /* 1, 2 or 5 times a power of ten, so that a length has three to eight of them. */
@@ -394,6 +543,7 @@ static void add_panel(struct wb_panel *panel, const struct view *view,
     } else {
         wb_figure_set_axes(panel, view->labels[0], view->labels[1]);
     }
+    add_obstacles(panel, view, drawing->set->plan, has_legend);
     for (int i = 0; i < drawing->n_shapes; i++) {
         struct wb_harness_drawing_shape shape = drawing->shapes[i];
         shape.label = has_legend ? shape.label : NULL;
@@ -402,6 +552,13 @@ static void add_panel(struct wb_panel *panel, const struct view *view,
     if (drawing->has_targets)
         add_targets(panel, view, drawing->set->plan, has_legend, &labels);
     add_items(panel, view, drawing, &labels);
+    for (int i = 0; i < drawing->set->plan->n_obstacles; i++) {
+        const struct wb_harness_plan_obstacle *const obstacle = &drawing->set->plan->obstacles[i];
+        double x, y;
+        project(view, obstacle->body.place, &x, &y);
+        if (!is_face_on(view, &obstacle->body))
+            wb_harness_labels_put(&labels, panel, x, y, obstacle->name, true);
+    }
     if (drawing->farthest >= 0)
         add_distance(panel, view, drawing, &labels);
     wb_harness_labels_release(&labels);

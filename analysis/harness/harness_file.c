@@ -15,6 +15,7 @@
 #define WB_LOG_DOMAIN "harness"
 
 static const char *const holds[] = {"point", "axis", "all", "slide", NULL};
+static const char *const obstacle_shapes[] = {"plane", "cylinder", "box", NULL};
 static const char *const steps[] = {"hang", "mount", "move", "release", "take_off", NULL};
 static const char parallel[] = "it is parallel to `up`, which must point across";
 
@@ -394,6 +395,90 @@ static enum wb_status read_clip(void *context, const struct wb_config_node *map)
     return add_item(reader, map, &item);
 }
 
+/* --- obstacles --- */
+
+const char *wb_harness_file_holder(const struct wb_harness_plan *plan, int index)
+{
+    return index < plan->n_items ? plan->items[index].name
+                                 : plan->obstacles[index - plan->n_items].name;
+}
+
+static int find_holder(const struct wb_harness_plan *plan, const char *name)
+{
+    for (int i = 0; i < plan->n_items + plan->n_obstacles; i++) {
+        if (strcmp(wb_harness_file_holder(plan, i), name) == 0)
+            return i;
+    }
+    return -1;
+}
+
+/* Which of the sizes belong to a shape. */
+static enum wb_status check_sizes(const struct wb_config_node *map, const struct wb_obstacle *body)
+{
+    static const char *const keys[] = {"radius_mm", "length_mm", "size_mm", "edge_radius_mm"};
+    static const char *const needed[] = {NULL, "radius_mm", "size_mm"};
+    static const int allowed[] = {0x0, 0xb, 0xc};
+    for (int i = 0; i < 4; i++) {
+        if (wb_config_find(map, keys[i]) && !(allowed[body->kind] >> i & 1))
+            return wb_config_refuse(map, keys[i], "a %s has none", obstacle_shapes[body->kind]);
+    }
+    if (needed[body->kind] && !wb_config_find(map, needed[body->kind]))
+        return wb_config_refuse(map, needed[body->kind], "missing: a %s needs it",
+                                obstacle_shapes[body->kind]);
+    struct wb_reason why = {""};
+    if (wb_obstacle_check(body, &why) != WB_OK)
+        return wb_config_refuse(map, "edge_radius_mm", "%s", why.text);
+    return WB_OK;
+}
+
+static enum wb_status read_obstacle(void *context, const struct wb_config_node *map)
+{
+    struct reader *const reader = context;
+    struct wb_harness_plan *const plan = reader->plan;
+    struct wb_harness_plan_obstacle obstacle = {.body = {.size = {0.0, (double)INFINITY, 0.0}}};
+    struct wb_obstacle *const body = &obstacle.body;
+    const struct wb_config_node *at = NULL, *direction_node = NULL, *up_node = NULL, *size = NULL;
+    double direction[3] = {1.0, 0.0, 0.0}, up[3] = {0.0, 0.0, 1.0};
+    int shape;
+    const struct wb_config_key keys[] = {
+        WB_CONFIG_TEXT("name", obstacle.name),
+        WB_CONFIG_CHOICE("shape", &shape, obstacle_shapes),
+        WB_CONFIG_NODE("at_mm", &at),
+        WB_CONFIG_OPTIONAL_NODE("direction", &direction_node),
+        WB_CONFIG_OPTIONAL_NODE("up", &up_node),
+        WB_CONFIG_OPTIONAL_NUMBER("radius_mm", &body->size[0], WB_MM, 1e-3, 1e6),
+        WB_CONFIG_OPTIONAL_NUMBER("length_mm", &body->size[1], WB_MM, 1e-3, 1e6),
+        WB_CONFIG_OPTIONAL_NODE("size_mm", &size),
+        WB_CONFIG_OPTIONAL_NUMBER("edge_radius_mm", &body->edge, WB_MM, 0.0, 1e6),
+        WB_CONFIG_OPTIONAL_NUMBER("friction", &body->friction, 1.0, 0.0, 10.0),
+    };
+    WB_TRY(wb_config_map(map, keys, WB_COUNT(keys)));
+    body->kind = (enum wb_obstacle_kind)shape;
+    WB_TRY(check_name(map, obstacle.name));
+    if (find_holder(plan, obstacle.name) >= 0)
+        return wb_config_refuse(map, "name", "%s is a name of this file already", obstacle.name);
+    WB_TRY(read_vector(map, "at_mm", at, WB_MM, 1e6, body->place));
+    if (direction_node)
+        WB_TRY(read_direction(map, "direction", direction_node, direction));
+    else if (body->kind != WB_OBSTACLE_BOX)
+        return wb_config_refuse(map, "direction", "missing: a %s needs it", obstacle_shapes[shape]);
+    if (size) {
+        const struct wb_config_key row = WB_CONFIG_NUMBER("size_mm", body->size, WB_MM, 1e-3, 1e6);
+        int n;
+        WB_TRY(wb_config_numbers(size, &row, 3, 3, body->size, &n));
+    }
+    WB_TRY(check_sizes(map, body));
+    if (up_node)
+        WB_TRY(read_direction(map, "up", up_node, up));
+    else if (is_parallel(direction, up))
+        up[0] = 1.0;
+    if (is_parallel(direction, up))
+        return wb_config_refuse(map, "up", "%s", parallel);
+    wb_harness_file_rotation(direction, up, NULL, body->rotation);
+    plan->obstacles[plan->n_obstacles++] = obstacle;
+    return WB_OK;
+}
+
 /* --- steps --- */
 
 /* Length of wire between an item and the root. */
@@ -465,6 +550,14 @@ static enum wb_status check_target(const struct wb_harness_plan *plan,
     if (step->has_up && !step->has_direction)
         return wb_fail_to(why, WB_ERR_ARGUMENT, "expected a `direction` beside it");
     *key = "at_mm";
+    for (int i = 0; i < plan->n_obstacles; i++) {
+        double normal[3], curvature[9];
+        const double depth =
+            -wb_obstacle_distance(&plan->obstacles[i].body, step->position, normal, curvature);
+        if (depth > 0.0)
+            return wb_fail_to(why, WB_ERR_ARGUMENT, "%s would be %.3g mm inside of obstacle %s",
+                              item->name, depth / WB_MM, plan->obstacles[i].name);
+    }
     return check_reach(plan, assembly, step, why);
 }
 
@@ -650,7 +743,7 @@ static enum wb_status read_top(struct reader *reader)
     struct wb_harness_plan *const plan = reader->plan;
     const struct wb_config_node *const top = reader->file.root;
     const struct wb_config_node *gravity = NULL, *wires = NULL, *root = NULL, *branches = NULL,
-                                *connectors = NULL, *clips = NULL, *list = NULL;
+                                *connectors = NULL, *clips = NULL, *obstacles = NULL, *list = NULL;
     static const char *const kind_words[] = {"harness", NULL};
     int kind;
     const struct wb_config_key keys[] = {
@@ -663,6 +756,7 @@ static enum wb_status read_top(struct reader *reader)
         WB_CONFIG_NODE("branches", &branches),
         WB_CONFIG_OPTIONAL_NODE("connectors", &connectors),
         WB_CONFIG_OPTIONAL_NODE("clips", &clips),
+        WB_CONFIG_OPTIONAL_NODE("obstacles", &obstacles),
         WB_CONFIG_NODE("steps", &list),
     };
     plan->gravity[2] = -WB_STANDARD_GRAVITY;
@@ -680,6 +774,9 @@ static enum wb_status read_top(struct reader *reader)
                                   read_connector, reader));
     if (clips)
         WB_TRY(wb_model_file_list(top, "clips", clips, 100, read_clip, reader));
+    if (obstacles)
+        WB_TRY(wb_model_file_list(top, "obstacles", obstacles, WB_HARNESS_MOST_OBSTACLES,
+                                  read_obstacle, reader));
     return wb_model_file_list(top, "steps", list, WB_HARNESS_MOST_STEPS, read_step, reader);
 }
 

@@ -16,6 +16,8 @@
  *       - {name: K1, mass_g: 12, centre_mm: [15, 0, 0]}   # at the end of the branch to K1
  *     clips:
  *       - {name: C1, branch: B1, at_mm: 150, holds: axis}
+ *     obstacles:
+ *       - {name: sill, shape: box, at_mm: [0, 0, -40], size_mm: [50, 200, 20], friction: 0.3}
  *     steps:
  *       - hang
  *       - {mount: C1, at_mm: [140, 20, 10], direction: [1, 0.1, 0]}
@@ -27,7 +29,8 @@
  * branch before it, or of the root, turned by `angle_deg` towards `around_deg`: the direction
  * around that axis, from `up` on. Its natural shape is straight, or has the curvatures about its y
  * and z axes, constant or between places. The frame of a wire's section: x along the wire, z up, y
- * = z x x.
+ * = z x x. An obstacle is rigid: what is behind a plane, whose direction points out of it; a
+ * cylinder along its direction; a box whose first size is along its direction and the last up.
  */
 #ifndef WB_ANALYSIS_HARNESS_HARNESS_FILE_H
 #define WB_ANALYSIS_HARNESS_HARNESS_FILE_H
@@ -45,6 +48,7 @@ enum {
     WB_HARNESS_MOST_WIRES = 32,
     WB_HARNESS_MOST_BRANCHES = 100,
     WB_HARNESS_MOST_ITEMS = 201, /* the root, connectors and clips */
+    WB_HARNESS_MOST_OBSTACLES = 20,
     WB_HARNESS_MOST_STEPS = 500,
     WB_HARNESS_MOST_CURVE = 50, /* places of a natural shape */
     WB_HARNESS_NAME = 40
@@ -93,6 +97,11 @@ struct wb_harness_item {
     double largest_force, largest_moment; /* limits, N, N m; 0: none */
 };
 
+struct wb_harness_plan_obstacle {
+    char name[WB_HARNESS_NAME];
+    struct wb_obstacle body;
+};
+
 enum wb_harness_step_kind {
     WB_HARNESS_HANG,
     WB_HARNESS_MOUNT,
@@ -116,10 +125,11 @@ struct wb_harness_plan {
     char name[WB_HARNESS_NAME], title[160];
     double gravity[3];       /* m/s2 */
     struct wb_rod_node root; /* position and rotation */
-    int n_wires, n_branches, n_items, n_steps;
+    int n_wires, n_branches, n_items, n_obstacles, n_steps;
     struct wb_harness_wire wires[WB_HARNESS_MOST_WIRES];
     struct wb_harness_plan_branch branches[WB_HARNESS_MOST_BRANCHES];
     struct wb_harness_item items[WB_HARNESS_MOST_ITEMS];
+    struct wb_harness_plan_obstacle obstacles[WB_HARNESS_MOST_OBSTACLES];
     struct wb_harness_step steps[WB_HARNESS_MOST_STEPS];
 };
 
@@ -153,6 +163,9 @@ void wb_harness_file_begin(const struct wb_harness_plan *plan,
                            struct wb_harness_assembly *assembly);
 void wb_harness_file_apply_step(const struct wb_harness_step *step,
                                 struct wb_harness_assembly *assembly);
+
+/* Name of what holds the wires: an item, or after them an obstacle. */
+const char *wb_harness_file_holder(const struct wb_harness_plan *plan, int index);
 
 /* Index of an item; -1: no such name. */
 int wb_harness_file_find_item(const struct wb_harness_plan *plan, const char *name);

@@ -49,12 +49,14 @@ static WB_KEYS(snap, "harness_snap",
                "A place where the equilibrium became unstable and the harness moved to another.");
 
 static const struct wb_key force_rows[] = {
-    {"name", TEXT, "root, connector or clip"},
+    {"name", TEXT, "root, connector, clip or obstacle"},
     {"force_N", FORCE(size), "force on the wire at the end of the step"},
     {"moment_N_mm", FORCE(moment_size), "moment on the wire"},
     {"force_vector_N", WB_FULL(struct wb_harness_force, force),
-     "the force along the wire, across and up, in the frame of the section there"},
-    {"moment_vector_N_mm", WB_FULL(struct wb_harness_force, moment), "the moment in that frame"},
+     "the force along the wire, across and up, in the frame of the section there, or that of the "
+     "obstacle"},
+    {"moment_vector_N_mm", WB_FULL(struct wb_harness_force, moment),
+     "the moment in that frame; of an obstacle about its place"},
     {"slid_mm", FORCE(slid) | IF_KNOWN,
      "length of wire that slid through the clip since its mount, towards the branch's beginning"},
     {"largest_force_N", FORCE(largest), "largest force during the step"},
@@ -66,7 +68,8 @@ static const struct wb_key force_rows[] = {
     {"twist_sensitive", FLAG | OPTIONAL,
      "that differs by more than 10 %: the force depends on a stiffness that is not measured"},
 };
-static WB_KEYS(force, "harness_force", "What holds the wire at a mounted item.");
+static WB_KEYS(force, "harness_force",
+               "What holds the wires at a mounted item, or an obstacle that they touch.");
 
 static const struct wb_key branch_rows[] = {
     {"name", TEXT, "branch"},
@@ -94,7 +97,7 @@ static const struct wb_key step_rows[] = {
     {"plastic_mJ", STEP(plastic),
      "plastic work from the first step on: dissipated, or kept by the hardening"},
     {"snaps", OBJECT | LIST, "snaps during the step", &snap_keys},
-    {"forces", OBJECT | LIST, "forces on the mounted items", &force_keys},
+    {"forces", OBJECT | LIST, "forces of the mounted items and the obstacles", &force_keys},
     {"branches", OBJECT | LIST, "branches", &branch_keys},
 };
 const struct wb_keys wb_harness_output_step_keys = {"harness_step", "A step of the assembly.",
@@ -176,12 +179,12 @@ void wb_harness_output_put_step(struct wb_json *object, const struct wb_harness_
     WB_PUT(object, &wb_harness_output_step_keys, struct wb_harness_step_result, step);
     put_snaps(object, plan, step);
     struct wb_json *const forces = wb_json_set_array(object, "forces");
-    for (int i = 0; i < plan->n_items; i++) {
+    for (int i = 0; i < plan->n_items + plan->n_obstacles; i++) {
         const struct wb_harness_force *const force = &step->forces[i];
         if (!force->is_mounted)
             continue;
         struct wb_json *const item = wb_json_append_object(forces);
-        wb_json_set_text(item, "name", plan->items[i].name);
+        wb_json_set_text(item, "name", wb_harness_file_holder(plan, i));
         WB_PUT(item, &force_keys, struct wb_harness_force, force);
         if (isfinite(force->soft_force))
             wb_json_set_boolean(item, "twist_sensitive",
@@ -316,7 +319,7 @@ static enum wb_status write_forces(const struct wb_harness_result_set *set, cons
     for (int i = 0; i < set->n_steps; i++) {
         char step[16];
         snprintf(step, sizeof step, "%d", i + 1);
-        for (int k = 0; k < set->plan->n_items; k++) {
+        for (int k = 0; k < set->plan->n_items + set->plan->n_obstacles; k++) {
             const struct wb_harness_force *const f = &set->results[i].forces[k];
             const struct column columns[] = {
                 {f->size, 0},        {f->force[0], 0},       {f->force[1], 0},  {f->force[2], 0},
@@ -324,7 +327,8 @@ static enum wb_status write_forces(const struct wb_harness_result_set *set, cons
                 {f->largest, 0},     {f->largest_moment, 3},
             };
             if (f->is_mounted)
-                append_row(&text, step, set->plan->items[k].name, columns, WB_COUNT(columns));
+                append_row(&text, step, wb_harness_file_holder(set->plan, k), columns,
+                           WB_COUNT(columns));
         }
     }
     const enum wb_status status = wb_csv_table_write(folder, "forces.csv", &text);
@@ -371,19 +375,19 @@ void wb_harness_output_append_table(struct wb_text *text, const struct wb_harnes
             wb_text_append(text, "  least radius %.3g mm (%s at %.4g mm)", b->least_radius / WB_MM,
                            plan->branches[tightest].name, b->at / WB_MM);
         wb_text_append(text, "\n");
-        for (int k = 0; k < plan->n_items; k++) {
+        for (int k = 0; k < plan->n_items + plan->n_obstacles; k++) {
             const struct wb_harness_force *const f = &step->forces[k];
             if (!f->is_mounted)
                 continue;
             char slid[32] = "";
             if (isfinite(f->slid))
                 snprintf(slid, sizeof slid, "  slid %.3g mm", f->slid / WB_MM);
-            wb_text_append(text,
-                           "      %-16s %8.3g N  %8.3g N mm   at most %.3g N, %.3g N mm%s%s%s\n",
-                           plan->items[k].name, chopped(f->size), chopped(f->moment_size / WB_NMM),
-                           chopped(f->largest), chopped(f->largest_moment / WB_NMM), slid,
-                           f->exceeds_force || f->exceeds_moment ? "  LIMIT EXCEEDED" : "",
-                           wb_harness_found_is_twist_sensitive(f) ? "  depends on GJ" : "");
+            wb_text_append(
+                text, "      %-16s %8.3g N  %8.3g N mm   at most %.3g N, %.3g N mm%s%s%s\n",
+                wb_harness_file_holder(plan, k), chopped(f->size), chopped(f->moment_size / WB_NMM),
+                chopped(f->largest), chopped(f->largest_moment / WB_NMM), slid,
+                f->exceeds_force || f->exceeds_moment ? "  LIMIT EXCEEDED" : "",
+                wb_harness_found_is_twist_sensitive(f) ? "  depends on GJ" : "");
         }
         for (int s = 0; s < step->n_snaps; s++)
             wb_text_append(text, "      snap at %.3g of the step: %s moves by %.3g mm\n",

@@ -6,9 +6,13 @@
 
 #include "analysis/harness/harness_frames.h"
 #include "base/memory.h"
+#include "base/units.h"
 #include "base/vec3.h"
 
 #define WB_LOG_DOMAIN "harness"
+
+/* A wire may begin as deep in an obstacle, over its diameter. */
+static const double most_depth = 5e-3;
 
 /* What is saved beside the solver's state. */
 struct own_state {
@@ -105,6 +109,27 @@ static int count_sliding(const struct wb_harness_plan *plan)
     return n;
 }
 
+static size_t count_holders(const struct wb_harness_plan *plan)
+{
+    return (size_t)(plan->n_items + plan->n_obstacles);
+}
+
+/* The obstacles must not be where the wires are at first. */
+static enum wb_status check_obstacles(const struct wb_harness_run *run)
+{
+    const struct wb_harness_plan *const plan = run->plan;
+    int obstacle, branch;
+    double at;
+    const double depth = wb_harness_depth(run->harness, &obstacle, &branch, &at);
+    if (!(depth > 0.0) || depth < most_depth * plan->wires[plan->branches[branch].wire].diameter)
+        return WB_OK;
+    return wb_fail(WB_ERR_ARGUMENT,
+                   "%s: obstacles: branch %s is %.3g mm deep in %s at %.4g mm before the first "
+                   "step, free of stress; move the obstacle, or turn the branch",
+                   plan->path, plan->branches[branch].name, depth / WB_MM,
+                   plan->obstacles[obstacle].name, at / WB_MM);
+}
+
 static enum wb_status make_harness(struct wb_harness_run *run)
 {
     const struct wb_harness_plan *const plan = run->plan;
@@ -113,12 +138,18 @@ static enum wb_status make_harness(struct wb_harness_run *run)
     struct wb_harness_branch *const branches = wb_memory_take(&memory, n, sizeof *branches);
     struct wb_harness_body *const bodies =
         wb_memory_take(&memory, (size_t)plan->n_items, sizeof *bodies);
+    struct wb_obstacle *const obstacles =
+        wb_memory_take(&memory, (size_t)plan->n_obstacles, sizeof *obstacles);
+    for (int i = 0; i < plan->n_obstacles; i++)
+        obstacles[i] = plan->obstacles[i].body;
     struct wb_harness_model model = {
         .n_branches = plan->n_branches,
         .branches = branches,
         .bodies = bodies,
         .element_length = run->settings.element_length,
         .most_sliding = count_sliding(plan),
+        .n_obstacles = plan->n_obstacles,
+        .obstacles = obstacles,
         .root = plan->root,
     };
     memcpy(model.gravity, plan->gravity, sizeof model.gravity);
@@ -130,6 +161,7 @@ static enum wb_status make_harness(struct wb_harness_run *run)
             .section = run->sections[b->wire],
             .length = b->length,
             .mass = plan->wires[b->wire].mass,
+            .radius = 0.5 * plan->wires[b->wire].diameter,
             .natural_curvature = b->n_curve > 0 ? natural_curvature : NULL,
             .curvature_context = (void *)b,
             .n_stations = find_stations(plan, i, stations),
@@ -147,6 +179,8 @@ static enum wb_status make_harness(struct wb_harness_run *run)
     }
     enum wb_status status = wb_harness_create(&run->harness, &model);
     wb_memory_release(&memory);
+    if (status == WB_OK)
+        status = check_obstacles(run);
     if (status != WB_OK)
         return status;
     for (int i = 0; i < plan->n_items; i++)
@@ -232,6 +266,30 @@ static bool is_held(const struct wb_harness_run *run, int item)
     return wb_harness_hold(run->harness, run->joints[item]) != WB_HARNESS_FREE;
 }
 
+/* Force of an obstacle on the wires, N, and its moment about its place, in space. */
+static void find_obstacle_force(const struct wb_harness_run *run, int i, double force[6])
+{
+    double moment[3];
+    wb_harness_obstacle_force(run->harness, i, force);
+    wb_vec3_cross(run->plan->obstacles[i].body.place, force, moment);
+    for (int k = 0; k < 3; k++)
+        force[3 + k] -= moment[k];
+}
+
+static void take_obstacle_force(const struct wb_harness_run *run, int i)
+{
+    struct wb_harness_force *const f = &run->result->forces[run->plan->n_items + i];
+    double R[9], force[6];
+    find_obstacle_force(run, i, force);
+    wb_rod_element_matrix(run->plan->obstacles[i].body.rotation, R);
+    wb_vec3_turn_back(R, force, f->force);
+    wb_vec3_turn_back(R, force + 3, f->moment);
+    f->size = wb_vec3_length(f->force);
+    f->moment_size = wb_vec3_length(f->moment);
+    f->is_mounted = f->size > 0.0 || f->largest > 0.0;
+    f->slid = f->soft_force = (double)NAN;
+}
+
 static void take_forces(const struct wb_harness_run *run)
 {
     for (int i = 0; i < run->plan->n_items; i++) {
@@ -254,6 +312,8 @@ static void take_forces(const struct wb_harness_run *run)
                       : (double)NAN;
         f->soft_force = (double)NAN;
     }
+    for (int i = 0; i < run->plan->n_obstacles; i++)
+        take_obstacle_force(run, i);
 }
 
 /* Bend radii and curvatures of the current state. */
@@ -294,6 +354,13 @@ static bool observe(void *context, double fraction)
         f->largest_moment = fmax(f->largest_moment, wb_vec3_length(reaction + 3));
         f->exceeds_force = item->largest_force > 0.0 && f->largest > item->largest_force;
         f->exceeds_moment = item->largest_moment > 0.0 && f->largest_moment > item->largest_moment;
+    }
+    for (int i = 0; i < run->plan->n_obstacles; i++) {
+        struct wb_harness_force *const f = &run->result->forces[run->plan->n_items + i];
+        double force[6];
+        find_obstacle_force(run, i, force);
+        f->largest = fmax(f->largest, wb_vec3_length(force));
+        f->largest_moment = fmax(f->largest_moment, wb_vec3_length(force + 3));
     }
     watch_branches(run, false);
     struct wb_harness_place *const frame = wb_harness_frames_take(&run->frames, fraction);
@@ -388,8 +455,8 @@ static void take_step(struct wb_harness_run *run, const struct wb_harness_result
 void wb_harness_run_take_memory(const struct wb_harness_run *run, struct wb_memory *memory,
                                 struct wb_harness_step_result *result)
 {
-    const size_t items = (size_t)run->plan->n_items, branches = (size_t)run->plan->n_branches;
-    result->forces = wb_memory_take(memory, items, sizeof *result->forces);
+    const size_t branches = (size_t)run->plan->n_branches;
+    result->forces = wb_memory_take(memory, count_holders(run->plan), sizeof *result->forces);
     result->branches = wb_memory_take(memory, branches, sizeof *result->branches);
     result->places = wb_memory_take(memory, (size_t)run->n_places, sizeof *result->places);
 }
@@ -397,7 +464,7 @@ void wb_harness_run_take_memory(const struct wb_harness_run *run, struct wb_memo
 static void begin_result(struct wb_harness_run *run, struct wb_harness_step_result *result)
 {
     run->result = result;
-    memset(result->forces, 0, (size_t)run->plan->n_items * sizeof *result->forces);
+    memset(result->forces, 0, count_holders(run->plan) * sizeof *result->forces);
     for (int i = 0; i < run->plan->n_branches; i++)
         result->branches[i] = (struct wb_harness_branch_result){
             .least_radius = (double)INFINITY,
@@ -604,7 +671,7 @@ enum wb_status wb_harness_run_compute(struct wb_harness_result_set *set,
     softer.frames = 0;
     const enum wb_status status = compute_once(&soft, plan, &softer, progress, context);
     for (int i = 0; status == WB_OK && i < soft.n_steps && soft.converged; i++) {
-        for (int k = 0; k < plan->n_items; k++)
+        for (int k = 0; k < plan->n_items + plan->n_obstacles; k++)
             set->results[i].forces[k].soft_force = soft.results[i].forces[k].size;
     }
     wb_harness_run_release(&soft);

@@ -20,9 +20,10 @@ struct wb_harness_settings {
     struct wb_rod_section_layout fibres; /* of a section */
 };
 
-/* What holds one item. In its own frame: x along the wire there, z up. */
+/* What holds the wires at one item, in its own frame: x along the wire there, z up; or an obstacle,
+ * in the obstacle's frame, its moment about its place. */
 struct wb_harness_force {
-    bool is_mounted;
+    bool is_mounted;                    /* or touches */
     double force[3], moment[3];         /* on the wire, N, N m */
     double size, moment_size;           /* of both vectors */
     double slid;                        /* m of wire since the mount, towards the beginning of the
@@ -63,7 +64,7 @@ struct wb_harness_step_result {
     struct wb_harness_snap snaps[WB_HARNESS_MOST_SNAPS];
     int snap_branch[WB_HARNESS_MOST_SNAPS];    /* -1: the root */
     double snap_at[WB_HARNESS_MOST_SNAPS];     /* m */
-    struct wb_harness_force *forces;           /* (n_items) */
+    struct wb_harness_force *forces;           /* (n_items, then n_obstacles) */
     struct wb_harness_branch_result *branches; /* (n_branches) */
     struct wb_harness_place *places;           /* (n_places) */
     double elastic;                            /* J: what the wires would give back */

@@ -93,7 +93,8 @@ static void copy_state(const struct wb_harness_session *s, struct wb_harness_ses
     to->result.forces = own.forces;
     to->result.branches = own.branches;
     to->result.places = own.places;
-    memcpy(own.forces, from->result.forces, (size_t)s->plan->n_items * sizeof *own.forces);
+    memcpy(own.forces, from->result.forces,
+           (size_t)(s->plan->n_items + s->plan->n_obstacles) * sizeof *own.forces);
     memcpy(own.branches, from->result.branches, (size_t)s->plan->n_branches * sizeof *own.branches);
     memcpy(own.places, from->result.places,
            (size_t)wb_harness_run_n_places(s->run) * sizeof *own.places);

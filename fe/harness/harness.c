@@ -63,8 +63,11 @@ static enum wb_status check_model(const struct wb_harness_model *model)
     if (model->most_sliding < 0 || model->most_sliding > WB_HARNESS_MOST_SLIDING)
         return wb_fail(WB_ERR_ARGUMENT, "%d sliding clips: expected at most %d",
                        model->most_sliding, WB_HARNESS_MOST_SLIDING);
-    for (int i = 0; i < model->n_obstacles; i++)
-        WB_TRY(wb_obstacle_check(&model->obstacles[i]));
+    for (int i = 0; i < model->n_obstacles; i++) {
+        struct wb_reason why = {""};
+        if (wb_obstacle_check(&model->obstacles[i], &why) != WB_OK)
+            return wb_fail(WB_ERR_ARGUMENT, "obstacle %d: %s", i, why.text);
+    }
     const double *const g = model->gravity;
     if (!(isfinite(g[0]) && isfinite(g[1]) && isfinite(g[2])))
         return wb_fail(WB_ERR_ARGUMENT, "gravity (%g, %g, %g) m/s2 is not finite", g[0], g[1],

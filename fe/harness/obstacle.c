@@ -3,31 +3,30 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/units.h"
 #include "base/vec3.h"
 #include "fe/rod/rod_element.h"
 
-#define WB_LOG_DOMAIN "obstacle"
+#define WB_LOG_DOMAIN "harness"
 
-enum wb_status wb_obstacle_check(const struct wb_obstacle *obstacle)
+enum wb_status wb_obstacle_check(const struct wb_obstacle *obstacle, struct wb_reason *why)
 {
     static const int sizes[] = {
         [WB_OBSTACLE_PLANE] = 0, [WB_OBSTACLE_CYLINDER] = 2, [WB_OBSTACLE_BOX] = 3};
     for (int k = 0; k < sizes[obstacle->kind]; k++) {
         const bool is_radius = obstacle->kind == WB_OBSTACLE_CYLINDER && k == 0;
+        const double most = obstacle->size[k] * (is_radius ? 1.0 : 0.5);
         if (!(obstacle->size[k] > 0.0))
-            return wb_fail(WB_ERR_ARGUMENT, "obstacle: size %g m: expected above 0",
-                           obstacle->size[k]);
-        if (!(obstacle->edge >= 0.0 &&
-              obstacle->edge <= obstacle->size[k] * (is_radius ? 1.0 : 0.5)))
-            return wb_fail(
-                WB_ERR_ARGUMENT,
-                "obstacle: edges of radius %g m: expected 0 or more, and at most half of "
-                "the size",
-                obstacle->edge);
+            return wb_fail_to(why, WB_ERR_ARGUMENT, "a size of %g mm: expected above 0",
+                              obstacle->size[k] / WB_MM);
+        if (!(obstacle->edge >= 0.0 && obstacle->edge <= most))
+            return wb_fail_to(why, WB_ERR_ARGUMENT,
+                              "edges of radius %g mm: expected 0 or more, and at most %g mm",
+                              obstacle->edge / WB_MM, most / WB_MM);
     }
     if (!(isfinite(obstacle->friction) && obstacle->friction >= 0.0))
-        return wb_fail(WB_ERR_ARGUMENT, "obstacle: friction %g: expected 0 or more",
-                       obstacle->friction);
+        return wb_fail_to(why, WB_ERR_ARGUMENT, "friction %g: expected 0 or more",
+                          obstacle->friction);
     return WB_OK;
 }
 

@@ -2,6 +2,7 @@
 #ifndef WB_FE_HARNESS_OBSTACLE_H
 #define WB_FE_HARNESS_OBSTACLE_H
 
+#include "base/reason.h"
 #include "base/status.h"
 
 enum wb_obstacle_kind {
@@ -21,7 +22,8 @@ struct wb_obstacle {
 
 /* WB_ERR_ARGUMENT if a size is not above 0, an edge has a radius of more than half of a size, or
  * the friction is negative. */
-WB_MUST_CHECK enum wb_status wb_obstacle_check(const struct wb_obstacle *obstacle);
+WB_MUST_CHECK enum wb_status wb_obstacle_check(const struct wb_obstacle *obstacle,
+                                               struct wb_reason *why);
 
 /* Distance of a point from the surface, m; negative inside. `normal` receives its gradient, a unit
  * vector out of the obstacle, `curvature` (3 x 3, row-major, 1/m) the gradient of the normal; zero

@@ -59,15 +59,16 @@ static void impossible_obstacles_are_refused(void **unused)
     (void)unused;
     const struct wb_obstacle good = {.kind = WB_OBSTACLE_BOX, .size = {1.0, 1.0, 1.0}};
     struct wb_obstacle bad = good;
-    assert_int_equal(wb_obstacle_check(&good), WB_OK);
+    struct wb_reason why;
+    assert_int_equal(wb_obstacle_check(&good, &why), WB_OK);
     bad.size[2] = 0.0;
-    assert_int_equal(wb_obstacle_check(&bad), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_obstacle_check(&bad, &why), WB_ERR_ARGUMENT);
     bad = good;
     bad.edge = 0.6;
-    assert_int_equal(wb_obstacle_check(&bad), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_obstacle_check(&bad, &why), WB_ERR_ARGUMENT);
     bad = good;
     bad.friction = -0.1;
-    assert_int_equal(wb_obstacle_check(&bad), WB_ERR_ARGUMENT);
+    assert_int_equal(wb_obstacle_check(&bad, &why), WB_ERR_ARGUMENT);
 }
 
 /* One branch along x from the origin, with obstacles. */
