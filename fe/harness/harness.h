@@ -82,6 +82,7 @@ struct wb_harness_balance {
     double farthest_hold;    /* largest distance of a held joint from its target, m */
     double farthest_turn;    /* and the largest rotation, rad */
     double farthest_contact; /* largest distance of a place that touches from its obstacle, m */
+    double largest_contact;  /* largest force of such a place, N */
 };
 
 enum {

@@ -17,7 +17,7 @@ static const double rounding = 5e-3;
 /* The stiffness of places that touch is at first this part of what it is at last, and grows by this
  * factor each time that the forces balance; friction begins likewise. In a second trial it begins
  * softer. */
-static const double soft = 1e-3, softest = 3e-5, stiffest = 30.0, growth = 30.0;
+static const double soft = 1e-3, softest = 3e-5, stiffest = 3.0, growth = 30.0;
 /* Gaps that become smaller by this ratio at least need no growth beyond a factor of 1. */
 static const double enough = 0.1;
 
@@ -292,6 +292,8 @@ void wb_harness_contact_add_forces(struct wb_harness *h, struct wb_harness_balan
                          c->rubbing[n] * friction_of(h, c) * c->touch.slip[k];
         }
         balance->farthest_contact = wb_larger(balance->farthest_contact, distance_of(h, c));
+        balance->largest_contact =
+            wb_larger(balance->largest_contact, fmax(c->force, c->touch.multiplier));
     }
     if (h->n_contacts > 0 && h->n_contacts == h->most_contacts)
         balance->farthest_contact = (double)NAN;

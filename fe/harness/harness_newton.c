@@ -12,6 +12,8 @@
 /* Of a line search: the work that is small, over that at its beginning; evaluations. */
 static const double search_part = 0.5;
 static const int max_searches = 12;
+/* A hold moves that has further to go, m or rad. */
+static const double moving = 1e-6;
 
 /* Columns of the equations of a node: of its own unknowns, then right-hand sides. */
 typedef double rows_t[U][WB_ROD_CHAIN_WIDTH];
@@ -466,7 +468,7 @@ static double work(const struct wb_harness *h)
             wb_harness_turn_basis(&held, false, way);
             wb_harness_turn_basis(&held, false, force);
             for (int k = 0; k < U; k++) {
-                if (held.is[k] && fabs(way[k]) > 1e-9)
+                if (held.is[k] && fabs(way[k]) > moving)
                     return 0.0;
                 force[k] = held.is[k] ? 0.0 : force[k];
             }

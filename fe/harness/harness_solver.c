@@ -21,9 +21,9 @@ static const int max_iterations = 20, max_scaled_down = 4;
  * iterations anew. */
 static const double decides = 1e-6;
 static const int max_changes = 20;
-/* The forces of places that touch are taken as known where the largest residual is below this part
- * of the largest internal force. */
-static const double knows = 1e-3;
+/* The forces of places that touch are taken as known where the largest residual is below these
+ * parts of the largest internal force and of the largest of those. */
+static const double knows = 1e-3, knows_contact = 1e-2;
 
 /* Largest residual over the largest internal force; distance and rotation from a hold's target over
  * the length of the harness, and in rad. */
@@ -129,7 +129,9 @@ static enum outcome iterate(struct wb_harness_solver *s, double weight, bool pas
         }
         const bool touches = balance.farthest_contact <= gap * s->length;
         if (!touches &&
-            balance.largest_residual <= fmax(knows * balance.largest_force, tolerance)) {
+            balance.largest_residual <=
+                fmax(fmin(knows * balance.largest_force, knows_contact * balance.largest_contact),
+                     tolerance)) {
             if (wb_harness_turn(h) > 2.0 * s->most_rotation)
                 return TURNED;
             if (++changes > max_changes)

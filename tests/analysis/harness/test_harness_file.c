@@ -148,6 +148,54 @@ static const struct {
     {15, "  - {name: C1, branch: B1, at_mm: 200, holds: slide}", 18, {"direction", "C1"}},
     {15, "  - {name: K1, branch: B1, at_mm: 200, holds: axis}", 15, {"name", "K1"}},
     {15, "  - {name: C1, branch: B2, at_mm: 200, holds: axis}", 15, {"at_mm", "K1"}},
+    {14,
+     "obstacles:\n  - {name: O, shape: ball, at_mm: [0, 0, -9]}\nclips:",
+     15,
+     {"shape", "ball"}},
+    {14,
+     "obstacles:\n  - {name: O, shape: plane, at_mm: [0, 0, -9]}\nclips:",
+     15,
+     {"direction", "plane"}},
+    {14,
+     "obstacles:\n  - {name: O, shape: box, at_mm: [0, 0, -9]}\nclips:",
+     15,
+     {"size_mm", "box"}},
+    {14,
+     "obstacles:\n  - {name: O, shape: box, at_mm: [0, 0, -9], size_mm: [9, 9]}\nclips:",
+     15,
+     {"size_mm", "3"}},
+    {14,
+     "obstacles:\n  - {name: O, shape: box, at_mm: [0, 0, -9], size_mm: [9, 9, 9], edge_radius_mm: "
+     "5}\nclips:",
+     15,
+     {"edge_radius_mm", "4.5"}},
+    {14,
+     "obstacles:\n  - {name: O, shape: box, at_mm: [0, 0, -9], size_mm: [9, 9, 9], up: [1, 0, "
+     "0]}\nclips:",
+     15,
+     {"up", "parallel"}},
+    {14,
+     "obstacles:\n  - {name: O, shape: plane, at_mm: [0, 0, -9], direction: [0, 0, 1], radius_mm: "
+     "5}\nclips:",
+     15,
+     {"radius_mm", "plane"}},
+    {14,
+     "obstacles:\n  - {name: O, shape: cylinder, at_mm: [0, 0, -9], direction: [0, 1, 0]}\nclips:",
+     15,
+     {"radius_mm", "cylinder"}},
+    {14,
+     "obstacles:\n  - {name: O, shape: plane, at_mm: [0, 0, -9], direction: [0, 0, 1], friction: "
+     "-1}\nclips:",
+     15,
+     {"friction", "-1"}},
+    {14,
+     "obstacles:\n  - {name: K1, shape: plane, at_mm: [0, 0, -9], direction: [0, 0, 1]}\nclips:",
+     15,
+     {"name", "K1"}},
+    {14,
+     "obstacles:\n  - {name: O, shape: plane, at_mm: [0, 0, 40], direction: [0, 0, 1]}\nclips:",
+     20,
+     {"at_mm", "10 mm inside of obstacle O"}},
     {17, "  - stand", 17, {"stand", "hang"}},
     {18, "  - {mount: C2, at_mm: [190, 0, 30]}", 18, {"mount", "C2"}},
     {18, "  - {mount: C1, at_mm: [190, 0, 80]}", 18, {"R", "206.2 mm apart, 200 mm"}},
@@ -184,6 +232,42 @@ static void mistakes_are_named_by_line_and_key(void **unused)
     free(plan);
 }
 
+static void obstacles_are_read(void **unused)
+{
+    (void)unused;
+    struct wb_harness_plan *const plan = make_plan();
+    double R[9];
+    write_harness(file, 14,
+                  "obstacles:\n"
+                  "  - {name: floor, shape: plane, at_mm: [0, 0, -300], direction: [0, 0, 2]}\n"
+                  "  - {name: tube, shape: cylinder, at_mm: [9, 0, -50], direction: [0, 1, 0],\n"
+                  "     radius_mm: 8, friction: 0.3}\n"
+                  "  - {name: sill, shape: box, at_mm: [9, 0, -90], size_mm: [10, 20, 30],\n"
+                  "     edge_radius_mm: 2}\n"
+                  "clips:");
+    assert_int_equal(wb_harness_file_read(plan, file), WB_OK);
+    assert_int_equal(plan->n_obstacles, 3);
+    const struct wb_obstacle *const floor = &plan->obstacles[0].body;
+    const struct wb_obstacle *const tube = &plan->obstacles[1].body;
+    const struct wb_obstacle *const sill = &plan->obstacles[2].body;
+    assert_int_equal(floor->kind, WB_OBSTACLE_PLANE);
+    assert_close_relative(floor->place[2], -0.3, 1e-14);
+    wb_rod_element_matrix(floor->rotation, R);
+    assert_close(R[6], 1.0, 1e-14);
+    assert_int_equal(tube->kind, WB_OBSTACLE_CYLINDER);
+    assert_close_relative(tube->size[0], 8e-3, 1e-14);
+    assert_true(isinf(tube->size[1]));
+    assert_true(tube->friction == 0.3);
+    wb_rod_element_matrix(tube->rotation, R);
+    assert_close(R[3], 1.0, 1e-14);
+    assert_int_equal(sill->kind, WB_OBSTACLE_BOX);
+    assert_close_relative(sill->size[2], 30e-3, 1e-14);
+    assert_close_relative(sill->edge, 2e-3, 1e-14);
+    assert_true(sill->friction == 0.0);
+    assert_string_equal(wb_harness_file_holder(plan, plan->n_items + 2), "sill");
+    free(plan);
+}
+
 static void missing_parts_are_named(void **unused)
 {
     (void)unused;
@@ -211,6 +295,7 @@ int main(void)
         cmocka_unit_test(rotation_has_the_direction_and_up),
         cmocka_unit_test(natural_shape_is_read),
         cmocka_unit_test(mistakes_are_named_by_line_and_key),
+        cmocka_unit_test(obstacles_are_read),
         cmocka_unit_test(missing_parts_are_named),
     };
     return cmocka_run_group_tests(tests, begin, remove_folder);

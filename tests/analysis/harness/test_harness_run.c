@@ -48,6 +48,76 @@ static void root_carries_the_weight_of_what_hangs(void **unused)
     release_set(&set, plan);
 }
 
+/* The axes of the first section, in which the root's force is, as columns. */
+static void find_root_axes(const struct wb_harness_step_result *step, double R[9])
+{
+    const struct wb_harness_place *const first = step->places;
+    double across[3];
+    wb_vec3_cross(first->up, first->direction, across);
+    for (int k = 0; k < 3; k++) {
+        R[3 * k] = first->direction[k];
+        R[3 * k + 1] = across[k];
+        R[3 * k + 2] = first->up[k];
+    }
+}
+
+/* The trunk hangs over a bar, and one lead lies on the floor. */
+static void holders_and_obstacles_carry_the_weight(void **unused)
+{
+    (void)unused;
+    static const char obstacles[] =
+        "obstacles:\n"
+        "  - {name: bar, shape: cylinder, at_mm: [150, 0, -20], direction: [0, 1, 0],\n"
+        "     radius_mm: 10, length_mm: 200, edge_radius_mm: 2, friction: 0.3}\n"
+        "  - {name: floor, shape: plane, at_mm: [0, 0, -130], direction: [0, 0, 1],\n"
+        "     friction: 0.4}\n"
+        "clips:";
+    struct wb_harness_result_set set;
+    struct wb_harness_plan *const plan = compute_set(&set, 14, obstacles, &yielding);
+    const int n = plan->n_items;
+    assert_true(set.converged);
+    for (int i = 0; i < 4; i += 3) { /* the steps after which no clip is mounted */
+        const struct wb_harness_force *const forces = set.results[i].forces;
+        double sum[3] = {0.0, 0.0, -weight_of(plan)}, R[9], force[3];
+        find_root_axes(&set.results[i], R);
+        wb_vec3_turn(R, forces[0].force, force);
+        for (int k = 0; k <= plan->n_obstacles; k++) {
+            for (int c = 0; c < 3; c++)
+                sum[c] += force[c];
+            if (k == plan->n_obstacles)
+                break;
+            wb_rod_element_matrix(plan->obstacles[k].body.rotation, R);
+            wb_vec3_turn(R, forces[n + k].force, force);
+        }
+        for (int c = 0; c < 3; c++)
+            assert_close(sum[c], 0.0, 1e-9 * weight_of(plan));
+    }
+    assert_true(set.results[0].forces[n].size > 0.1 * weight_of(plan));
+    assert_true(set.results[0].forces[n].largest >= set.results[0].forces[n].size);
+    assert_true(set.results[0].forces[n + 1].size > 1e-3 * weight_of(plan));
+    assert_false(set.results[4].forces[n + 1].size > 1e-9);
+    release_set(&set, plan);
+}
+
+static void wire_that_begins_in_an_obstacle_is_refused(void **unused)
+{
+    (void)unused;
+    struct wb_harness_plan *const plan = make_plan();
+    struct wb_harness_result_set set;
+    write_harness(file, 14,
+                  "obstacles:\n"
+                  "  - {name: wall, shape: plane, at_mm: [500, 0, 0], direction: [-1, 0, 0]}\n"
+                  "clips:");
+    assert_int_equal(wb_harness_file_read(plan, file), WB_OK);
+    keep_messages();
+    assert_int_equal(wb_harness_run_compute(&set, plan, &yielding, NULL, NULL), WB_ERR_ARGUMENT);
+    release_messages();
+    assert_non_null(strstr(kept.error, "obstacles"));
+    assert_non_null(strstr(kept.error, "wall"));
+    assert_non_null(strstr(kept.error, "B3"));
+    release_set(&set, plan);
+}
+
 static void elastic_harness_forgets(void **unused)
 {
     (void)unused;
@@ -347,6 +417,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(root_carries_the_weight_of_what_hangs),
+        cmocka_unit_test(holders_and_obstacles_carry_the_weight),
+        cmocka_unit_test(wire_that_begins_in_an_obstacle_is_refused),
         cmocka_unit_test(elastic_harness_forgets),
         cmocka_unit_test(yielding_harness_keeps_a_shape),
         cmocka_unit_test(closed_sequence_yields_no_work),
