@@ -199,8 +199,6 @@ static void take_border_memory(struct wb_harness *h)
 static void take_contact_memory(struct wb_harness *h)
 {
     const size_t most = (size_t)h->most_contacts;
-    if (most == 0)
-        return;
     h->obstacles = wb_memory_take(&h->memory, (size_t)h->n_obstacles, sizeof *h->obstacles);
     h->now.touch = wb_memory_take(&h->memory, most, sizeof *h->now.touch);
     h->committed_touches.touch = wb_memory_take(&h->memory, most, sizeof *h->now.touch);

@@ -14,15 +14,20 @@ enum {
  * in its middle, so that it has a minimum where the wire lies flat. */
 static const double rounding = 5e-3;
 
+/* A minimum is beside a joint at this part of half of an element. */
+static const double beside = 0.1;
+
 /* The stiffness of places that touch is at first this part of what it is at last, and grows by this
  * factor each time that the forces balance; friction begins likewise. In a second trial it begins
  * softer. */
 static const double soft = 1e-3, softest = 3e-5, stiffest = 3.0, growth = 30.0;
 /* Gaps that become smaller by this ratio at least need no growth beyond a factor of 1. */
 static const double enough = 0.1;
+static const double least_relaxation = 0.1;
 
-/* Arm at which the rotation of a normal is a way, over the length of the harness. */
-static const double turn_arm = 1e-3;
+/* Arm at which the rotation of a normal is a way, over the length of the harness; part of its way
+ * by which a place moves along the wire that counts. */
+static const double turn_arm = 1e-4, along_part = 1e-6;
 
 static const struct wb_rod_node *node_of(const struct wb_harness *h, int e, int n)
 {
@@ -109,32 +114,44 @@ static double arc_length(const struct wb_harness *h, int e, double at)
     return h->elements[e].begin + (1.0 + at) * half_length(h, e);
 }
 
-/* The nearest of the places found to one that was known, within an element along the wire; -1 if
+/* The nearest of the places found to one that was known, nearer than `most` along the wire; -1 if
  * there is none. */
-static int nearest_to(const struct wb_harness *h, const struct wb_harness_touch *t, bool is_fixed)
+static int nearest_to(const struct wb_harness *h, const struct wb_harness_touch *t, bool is_fixed,
+                      double most)
 {
     const int e = t->element;
     const int end = h->first_contact[e + 1 < h->n_elements ? e + 2 : h->n_elements];
-    double least = h->elements[e].shape.length;
     int nearest = -1;
     for (int i = h->first_contact[e > 0 ? e - 1 : 0]; i < end; i++) {
         const struct wb_harness_contact *const c = &h->contacts[i];
         const double away = fabs(arc_length(h, e, t->at) - arc_length(h, c->element, c->at));
-        if (t->obstacle != c->obstacle || is_fixed != c->touch.is_fixed ||
-            h->elements[e].branch != h->elements[c->element].branch || !(away < least))
+        if (t->obstacle != c->obstacle || is_fixed != c->touch.is_fixed || c->is_beside ||
+            h->elements[e].branch != h->elements[c->element].branch || !(away < most))
             continue;
-        least = away;
+        most = away;
         nearest = i;
     }
     return nearest;
 }
 
-/* A minimum that has moved to the end of an element, or to another minimum, leaves its force there.
- */
+/* A place that is no more leaves its force to one beside it. */
 static int heir_of(const struct wb_harness *h, const struct wb_harness_touch *t)
 {
-    const int own = nearest_to(h, t, t->is_fixed);
-    return own >= 0 || t->is_fixed ? own : nearest_to(h, t, true);
+    const double length = h->elements[t->element].shape.length;
+    const int own = nearest_to(h, t, t->is_fixed, t->is_fixed ? 1e-3 * length : length);
+    return own >= 0 ? own : nearest_to(h, t, !t->is_fixed, length);
+}
+
+/* A joint beside which the gap has a minimum does not touch: the minimum does. */
+static void pass_over_joints(struct wb_harness *h)
+{
+    for (int i = 0; i < h->n_contacts; i++) {
+        struct wb_harness_contact *const c = &h->contacts[i];
+        if (!c->touch.is_fixed)
+            continue;
+        const int minimum = nearest_to(h, &c->touch, false, beside * half_length(h, c->element));
+        c->is_beside = minimum >= 0 && h->contacts[minimum].gap < c->gap;
+    }
 }
 
 static void inherit(struct wb_harness *h)
@@ -151,6 +168,8 @@ static void inherit(struct wb_harness *h)
         }
         to->multiplier += t->multiplier;
         to->expected += t->expected;
+        to->pressed += t->pressed;
+        to->missing = t->missing;
     }
     for (int k = 0; k < h->committed_touches.n; k++) {
         const struct wb_harness_touch *const t = &h->committed_touches.touch[k];
@@ -192,6 +211,7 @@ static void add_place(struct wb_harness *h, const struct wb_harness_contact *pla
     c->touch.element = c->element;
     c->touch.obstacle = c->obstacle;
     c->touch.at = c->at;
+    c->touch.missing = (double)NAN;
     memcpy(c->touch.normal, c->normal, sizeof c->normal);
 }
 
@@ -206,23 +226,20 @@ static void add_fixed(struct wb_harness *h, int e, int obstacle, double at)
 /* The minima of the gap inside of an element, and its far end. */
 static void look_at_element(struct wb_harness *h, int e, int obstacle)
 {
-    struct wb_harness_contact sample[3];
-    double low, high;
+    double low, high, slope_before = 0.0;
     find_part(h, e, &low, &high);
     if (!(low < high))
         return;
     const double step = (high - low) / (SAMPLES - 1);
     for (int i = 0; i < SAMPLES; i++) {
-        sample[0] = sample[1];
-        sample[1] = sample[2];
-        sample[2] = (struct wb_harness_contact){
+        struct wb_harness_contact place = {
             .element = e, .obstacle = obstacle, .at = i < SAMPLES - 1 ? low + i * step : high};
-        (void)look_at(h, &sample[2]);
-        if (i > 1 && sample[1].gap < sample[0].gap && sample[1].gap <= sample[2].gap) {
-            struct wb_harness_contact place = sample[1];
-            refine(h, &place, sample[0].at, sample[2].at);
+        const double slope = look_at(h, &place);
+        if (slope_before < 0.0 && slope > 0.0) {
+            refine(h, &place, place.at - step, place.at);
             add_place(h, &place);
         }
+        slope_before = slope;
     }
     if (low > -1.0)
         add_fixed(h, e, obstacle, low);
@@ -240,8 +257,10 @@ void wb_harness_contact_find(struct wb_harness *h)
         }
         h->first_contact[e + 1] = h->n_contacts;
     }
-    if (h->n_obstacles > 0)
+    if (h->n_obstacles > 0) {
+        pass_over_joints(h);
         inherit(h);
+    }
     int n = 0;
     for (int e = 0, i = 0; e < h->n_elements && h->n_obstacles > 0; e++) {
         const int end = h->first_contact[e + 1];
@@ -249,7 +268,7 @@ void wb_harness_contact_find(struct wb_harness *h)
         for (; i < end; i++) {
             struct wb_harness_contact c = h->contacts[i];
             c.force = fmax(c.touch.multiplier - stiffness_of(h, e) * c.gap, 0.0);
-            if (!(c.force > 0.0 || c.touch.multiplier > 0.0))
+            if (c.is_beside || !(c.force > 0.0 || c.touch.multiplier > 0.0))
                 continue;
             find_slip(h, &c);
             h->contacts[n++] = c;
@@ -264,7 +283,7 @@ void wb_harness_contact_find(struct wb_harness *h)
 
 static double friction_of(const struct wb_harness *h, const struct wb_harness_contact *c)
 {
-    return h->obstacles[c->obstacle].friction * c->touch.multiplier;
+    return h->obstacles[c->obstacle].friction * c->touch.pressed;
 }
 
 /* How far a place is from its obstacle; the angle by which the normal differs from that known
@@ -275,7 +294,9 @@ static double distance_of(const struct wb_harness *h, const struct wb_harness_co
     if (friction_of(h, c) > 0.0) {
         const double turn = wb_vec3_distance(c->normal, c->touch.normal);
         const double moved = fabs(c->at - c->touch.at) * half_length(h, c->element);
-        way = fmax(way, turn_arm * fmax(turn * h->length, moved));
+        const double missing = fabs(c->force - c->touch.pressed);
+        way = fmax(way, fmax(turn_arm * h->length * turn, along_part * moved));
+        way = fmax(way, missing / h->elements[c->element].contact_stiffness);
     }
     return way;
 }
@@ -390,12 +411,37 @@ static void take_forces(const struct wb_harness *h, struct wb_harness_touches *t
     }
 }
 
+/* Aitken's relaxation for vectors (Irons and Tuck 1969): where more friction takes force from the
+ * places that rub, the forces would alternate without an end. */
+static void relax(struct wb_harness *h)
+{
+    double change = 0.0, along = 0.0;
+    for (int i = 0; i < h->n_contacts; i++) {
+        const struct wb_harness_contact *const c = &h->contacts[i];
+        const double missing = c->force - c->touch.pressed;
+        if (isnan(c->touch.missing))
+            continue;
+        change += (missing - c->touch.missing) * (missing - c->touch.missing);
+        along += c->touch.missing * (missing - c->touch.missing);
+    }
+    if (change > 0.0)
+        h->relaxation =
+            along < 0.0 ? fmin(fmax(-h->relaxation * along / change, least_relaxation), 1.0) : 1.0;
+    for (int i = 0; i < h->n_contacts; i++) {
+        struct wb_harness_touch *const t = &h->contacts[i].touch;
+        const bool is_new = isnan(t->missing);
+        t->missing = h->contacts[i].force - t->pressed;
+        t->pressed += (is_new ? 1.0 : h->relaxation) * t->missing;
+    }
+}
+
 void wb_harness_adapt_contacts(struct wb_harness *h)
 {
     double gap = 0.0;
-    take_forces(h, &h->now);
     for (int i = 0; i < h->n_contacts; i++)
         gap = fmax(gap, distance_of(h, &h->contacts[i]));
+    relax(h);
+    take_forces(h, &h->now);
     if (h->contact_factor < 1.0)
         h->contact_factor = fmin(h->contact_factor * growth, 1.0);
     else if (gap > enough * h->last_gap)
@@ -412,9 +458,12 @@ void wb_harness_contact_revert(struct wb_harness *h)
 {
     h->contact_factor = soft;
     h->last_gap = (double)INFINITY;
+    h->relaxation = 1.0;
     h->now.n = h->committed_touches.n;
-    for (int i = 0; i < h->now.n; i++)
+    for (int i = 0; i < h->now.n; i++) {
         h->now.touch[i] = h->committed_touches.touch[i];
+        h->now.touch[i].missing = (double)NAN;
+    }
 }
 
 bool wb_harness_soften_contacts(struct wb_harness *h)

@@ -24,6 +24,10 @@ static const int max_changes = 20;
 /* The forces of places that touch are taken as known where the largest residual is below these
  * parts of the largest internal force and of the largest of those. */
 static const double knows = 1e-3, knows_contact = 1e-2;
+/* A force that shifts between two places beside each other does so slowly: after some such changes
+ * a larger gap is accepted. */
+static const int slow_changes = 10;
+static const double slow_ratio = 100.0;
 
 /* Largest residual over the largest internal force; distance and rotation from a hold's target over
  * the length of the harness, and in rad. */
@@ -127,7 +131,8 @@ static enum outcome iterate(struct wb_harness_solver *s, double weight, bool pas
             i = scaled_down = 0;
             wb_harness_evaluate(h, weight, &balance);
         }
-        const bool touches = balance.farthest_contact <= gap * s->length;
+        const bool touches = balance.farthest_contact <=
+                             gap * s->length * (changes < slow_changes ? 1.0 : slow_ratio);
         if (!touches &&
             balance.largest_residual <=
                 fmax(fmin(knows * balance.largest_force, knows_contact * balance.largest_contact),

@@ -88,6 +88,8 @@ struct wb_harness_touch {
     double at;                    /* where on the element friction acts, from -1 to 1 */
     double multiplier, normal[3]; /* force along the normal, N, and normal */
     double expected;              /* force after the iteration, N */
+    double pressed;               /* force that friction is proportional to, N */
+    double missing;               /* force less `pressed` when that was taken before; NAN: not */
     double slip[3];               /* motion along the surface over the presliding distance */
 };
 
@@ -106,7 +108,7 @@ struct wb_harness_contact {
     double turned[3], bend;                     /* of the gap by the place: see harness_contact.c */
     double force;                               /* along the normal, N */
     double rate;                                /* derivative of the slip by the motion, 1/m */
-    bool slips;
+    bool slips, is_beside;                      /* a joint with a minimum beside it */
 };
 
 /* What of a point's section may yield: axial strain and bending. */
@@ -159,6 +161,7 @@ struct wb_harness {
     struct wb_harness_touches now, committed_touches;
     double contact_factor;               /* on the stiffness of places that touch */
     double last_gap;                     /* largest when it was last chosen, m */
+    double relaxation;                   /* of the forces that friction is proportional to */
     struct wb_harness_contact *contacts; /* (n_contacts of most_contacts) of the last evaluation */
     int *first_contact;                  /* (n_elements + 1) */
     int negative;
