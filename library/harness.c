@@ -70,6 +70,7 @@ static const struct wb_column_kind force_kinds[] = {
     {"largest_moment_Nm", "N m", WB_COLUMN_REAL},
     {"exceeds_force", "1", WB_COLUMN_INTEGER},
     {"exceeds_moment", "1", WB_COLUMN_INTEGER},
+    {"slid_m", "m", WB_COLUMN_REAL},
 };
 
 static const struct wb_column_kind branch_kinds[] = {
@@ -149,6 +150,7 @@ static void add_forces(const struct wirebench_harness *h, struct wb_columns *tab
             {.real = f->largest_moment},
             {.integer = f->exceeds_force},
             {.integer = f->exceeds_moment},
+            {.real = f->slid},
         };
         if (f->is_mounted)
             wb_columns_add_row(table, cells);

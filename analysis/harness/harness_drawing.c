@@ -159,6 +159,17 @@ static const struct wb_harness_place *place_of(const struct wb_harness_result_se
     return &places[best];
 }
 
+/* Where an item is in the last shape. */
+static const double *position_of(const struct wb_harness_drawing *drawing, int item)
+{
+    const struct wb_harness_result_set *const set = drawing->set;
+    const double at = wb_harness_run_place(
+        set->plan, drawing->step < 0 ? NULL : set->results[drawing->step].forces, item);
+    return place_of(set, drawing->shapes[drawing->n_shapes - 1].places,
+                    set->plan->items[item].branch, at)
+        ->position;
+}
+
 static struct wb_figure_style style_of_item(const struct wb_harness_drawing *drawing, int item)
 {
     static const enum wb_figure_marker markers[] = {
@@ -189,22 +200,14 @@ static void add_items(struct wb_panel *panel, const struct view *view,
     const struct wb_harness_place *const places = drawing->shapes[drawing->n_shapes - 1].places;
     double x, y;
     for (int i = 0; i < plan->n_items; i++) {
-        const struct wb_harness_item *const item = &plan->items[i];
         const struct wb_figure_style style = style_of_item(drawing, i);
-        project(view,
-                place_of(set, places, item->branch, wb_harness_run_place(set, drawing->step, i))
-                    ->position,
-                &x, &y);
+        project(view, position_of(drawing, i), &x, &y);
         wb_figure_add_line(panel, NULL, 1, &x, &y, &style);
         wb_harness_labels_add_mark(labels, x, y);
     }
     for (int i = 0; i < plan->n_items; i++) {
-        const struct wb_harness_item *const item = &plan->items[i];
-        project(view,
-                place_of(set, places, item->branch, wb_harness_run_place(set, drawing->step, i))
-                    ->position,
-                &x, &y);
-        wb_harness_labels_put(labels, panel, x, y, item->name, false);
+        project(view, position_of(drawing, i), &x, &y);
+        wb_harness_labels_put(labels, panel, x, y, plan->items[i].name, false);
     }
     for (int i = 0; drawing->names_branches && i < plan->n_branches; i++) {
         project(view, place_of(set, places, i, 0.5 * plan->branches[i].length)->position, &x, &y);
@@ -322,13 +325,9 @@ static void add_drops(struct wb_panel *panel, const struct view *view,
                       const struct wb_harness_drawing *drawing)
 {
     const struct wb_figure_style style = {.colour = wb_palette_rule(), .width = 0.7};
-    const struct wb_harness_place *const places = drawing->shapes[drawing->n_shapes - 1].places;
     struct path path = {0};
     for (int i = 0; i < drawing->set->plan->n_items; i++) {
-        const struct wb_harness_item *const item = &drawing->set->plan->items[i];
-        const double *const at = place_of(drawing->set, places, item->branch,
-                                          wb_harness_run_place(drawing->set, drawing->step, i))
-                                     ->position;
+        const double *const at = position_of(drawing, i);
         const double below[3] = {at[0], at[1], view->low[2]};
         add_piece(&path, view, at, below);
     }

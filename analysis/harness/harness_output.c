@@ -310,18 +310,19 @@ static enum wb_status write_forces(const struct wb_harness_result_set *set, cons
                                         "moment_across_N_mm",
                                         "moment_up_N_mm",
                                         "largest_force_N",
-                                        "largest_moment_N_mm"};
+                                        "largest_moment_N_mm",
+                                        "slid_mm"};
     struct wb_text text = {0};
     wb_csv_table_append_header(&text, names, WB_COUNT(names));
-    for (int i = 0; i < set->n_steps; i++) {
-        char step[16];
-        snprintf(step, sizeof step, "%d", i + 1);
+    for (int i = 1; i < set->n_shapes; i++) {
+        char step[WB_NUMBER_TEXT];
+        (void)wb_number_format(set->shapes[i].time, step);
         for (int k = 0; k < set->plan->n_items; k++) {
-            const struct wb_harness_force *const f = &set->results[i].forces[k];
+            const struct wb_harness_force *const f = &set->shapes[i].forces[k];
             const struct column columns[] = {
                 {f->size, 0},        {f->force[0], 0},       {f->force[1], 0},  {f->force[2], 0},
                 {f->moment_size, 3}, {f->moment[0], 3},      {f->moment[1], 3}, {f->moment[2], 3},
-                {f->largest, 0},     {f->largest_moment, 3},
+                {f->largest, 0},     {f->largest_moment, 3}, {f->slid, 3},
             };
             if (f->is_mounted)
                 append_row(&text, step, set->plan->items[k].name, columns, WB_COUNT(columns));

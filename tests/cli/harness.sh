@@ -91,13 +91,17 @@ PYTHON
     fail '--frames'
 python3 - plain framed films/small.pvd <<'PYTHON' || fail 'the frames are wrong'
 import re, sys
-plain, framed = ([line.split(",", 1) for line in open(f + "/shapes.csv")] for f in sys.argv[1:3])
-times = list(dict.fromkeys(row[0] for row in framed[1:]))
-whole = {row[0] for row in plain[1:]}
-assert [row for row in framed[1:] if row[0] in whole] == plain[1:]
-for step in range(7):
-    between = [float(t) for t in times[1:] if step < float(t) < step + 1]
-    assert 1 <= len(between) <= 3 and between == sorted(between), (step, between)
+for table in "forces", "shapes":
+    plain, framed = ([line.split(",", 1) for line in open("%s/%s.csv" % (f, table))] for f in sys.argv[1:3])
+    times = list(dict.fromkeys(row[0] for row in framed[1:]))
+    whole = {row[0] for row in plain[1:]}
+    assert [row for row in framed[1:] if row[0] in whole] == plain[1:]
+    for step in range(7):
+        between = [float(t) for t in times if t != "natural" and step < float(t) < step + 1]
+        assert 1 <= len(between) <= 3 and between == sorted(between), (step, between)
+    if table == "forces":
+        of_forces = times
+assert times == ["natural"] + of_forces
 listed = re.findall('timestep="([^"]*)"', open(sys.argv[3]).read())
 assert listed == ["0"] + times[1:], (listed, times)
 PYTHON
