@@ -215,19 +215,26 @@ static void add_items(struct wb_panel *panel, const struct view *view,
     }
 }
 
+/* Where the steps mount items, and a line to each from the item. */
 static void add_targets(struct wb_panel *panel, const struct view *view,
-                        const struct wb_harness_plan *plan, bool has_legend,
+                        const struct wb_harness_drawing *drawing, bool has_legend,
                         struct wb_harness_labels *labels)
 {
+    const struct wb_harness_plan *const plan = drawing->set->plan;
     const struct wb_figure_style style = {
         .colour = wb_palette_warning(), .marker = WB_MARKER_RING, .marker_size = 4.5};
-    struct path path = {0};
+    const struct wb_figure_style way = {
+        .colour = wb_palette_warning(), .width = 0.9, .dash = WB_DASH_DOTTED};
+    struct path path = {0}, ways = {0};
     for (int i = 0; i < plan->n_steps; i++) {
-        if (plan->steps[i].kind != WB_HARNESS_MOUNT)
+        const struct wb_harness_step *const step = &plan->steps[i];
+        if (step->kind != WB_HARNESS_MOUNT)
             continue;
-        add_place(&path, view, plan->steps[i].position);
+        add_place(&path, view, step->position);
+        add_piece(&ways, view, position_of(drawing, step->item), step->position);
         wb_harness_labels_add_mark(labels, path.x[path.n - 1], path.y[path.n - 1]);
     }
+    put_path(&ways, panel, NULL, &way);
     put_path(&path, panel, has_legend ? "mounted at" : NULL, &style);
 }
 
@@ -399,7 +406,7 @@ static void add_panel(struct wb_panel *panel, const struct view *view,
         add_shape(panel, view, drawing->set, &shape, (double)NAN);
     }
     if (drawing->has_targets)
-        add_targets(panel, view, drawing->set->plan, has_legend, &labels);
+        add_targets(panel, view, drawing, has_legend, &labels);
     add_items(panel, view, drawing, &labels);
     if (drawing->farthest >= 0)
         add_distance(panel, view, drawing, &labels);
@@ -582,9 +589,13 @@ enum wb_status wb_harness_drawing_write(const struct wb_harness_result_set *set,
     struct wb_harness_drawing drawing;
     struct wb_figure *figure;
     char footer[160];
+    bool is_virtual = false;
     wb_harness_drawing_of_steps(&drawing, set);
-    snprintf(footer, sizeof footer, "%s: simulation, %s", set->plan->name,
-             set->settings.is_elastic ? "elastic" : "elastoplastic");
+    for (int i = 0; i < set->plan->n_wires; i++)
+        is_virtual |= set->plan->wires[i].is_virtual;
+    snprintf(footer, sizeof footer, "%s: simulation, %s%s", set->plan->name,
+             set->settings.is_elastic ? "elastic" : "elastoplastic",
+             is_virtual ? ", with wires of a virtual rig" : "");
     WB_TRY(wb_harness_drawing_create(&drawing, footer, &figure));
     const enum wb_status status = wb_figure_write_file(figure, PNG_SCALE, path);
     wb_figure_destroy(figure);

@@ -61,7 +61,7 @@ grep -qF 'The only limit is kept' own/report.html || fail 'the limit of the radi
 # The report of a harness has no datasets; a harness file is no campaign, and a campaign no harness file.
 run 1 own-report.yaml --stale
 run 1 own.yaml -o x
-grep -q 'is a harness file, expected a campaign file; for this file: wirebench solve harness' err || fail "$(cat err)"
+grep -q 'is a harness file, expected a campaign file; for this file: wirebench quicklook' err || fail "$(cat err)"
 "$wirebench" solve harness own-report.yaml 2>err && fail 'a campaign was solved'
 grep -q 'is a campaign file, expected a harness file; for this file: wirebench report' err || fail "$(cat err)"
 "$wirebench" quicklook own-report.yaml -o x 2>err && fail 'a campaign was looked at'
