@@ -81,6 +81,7 @@ static const struct wb_column_kind branch_kinds[] = {
     {"largest_bending_so_far_1_m", "1/m", WB_COLUMN_REAL},
     {"beyond_calibration", "1", WB_COLUMN_INTEGER},
     {"exceeds_radius", "1", WB_COLUMN_INTEGER},
+    {"tightest_radius_m", "m", WB_COLUMN_REAL},
 };
 
 static void add_shapes(const struct wirebench_harness *h, struct wb_columns *table)
@@ -170,6 +171,7 @@ static void add_branches(const struct wirebench_harness *h, struct wb_columns *t
             {.real = b->largest_bending_so_far},
             {.integer = b->is_beyond},
             {.integer = b->exceeds_radius},
+            {.real = b->tightest_radius},
         };
         wb_columns_add_row(table, cells);
     }

@@ -72,6 +72,8 @@ static const struct wb_key branch_rows[] = {
     {"name", TEXT, "branch"},
     {"least_radius_mm", BRANCH(least_radius) | UNKNOWN, "least bend radius; null: straight"},
     {"at_mm", BRANCH(at), "where it is"},
+    {"tightest_radius_mm", BRANCH(tightest_radius) | UNKNOWN,
+     "least bend radius during the step; null: straight"},
     {"largest_bending_1_m", BRANCH(largest_bending),
      "largest curvature relative to the natural shape"},
     {"largest_bending_so_far_1_m", BRANCH(largest_bending_so_far),
@@ -378,8 +380,10 @@ static void append_radii(struct wb_text *text, const struct wb_harness_plan *pla
 {
     for (int b = 0; b < plan->n_branches; b++) {
         if (step->branches[b].exceeds_radius)
-            wb_text_append(text, "      %-16s bend radius  LIMIT EXCEEDED (%.4g mm)\n",
-                           plan->branches[b].name, plan->branches[b].least_radius / WB_MM);
+            wb_text_append(text,
+                           "      %-16s bend radius down to %.3g mm  LIMIT EXCEEDED (%.4g mm)\n",
+                           plan->branches[b].name, step->branches[b].tightest_radius / WB_MM,
+                           plan->branches[b].least_radius / WB_MM);
     }
 }
 

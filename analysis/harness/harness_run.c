@@ -270,7 +270,8 @@ static void watch_branches(struct wb_harness_run *run, bool at_end)
         double *const so_far = &run->own.largest_bending[point.branch];
         *so_far = b->largest_bending_so_far = fmax(*so_far, bending);
         b->is_beyond = b->largest_bending_so_far > run->plan->wires[plan->wire].largest_curvature;
-        b->exceeds_radius |= plan->least_radius > 0.0 && radius < plan->least_radius;
+        b->tightest_radius = fmin(b->tightest_radius, radius);
+        b->exceeds_radius |= radius < plan->least_radius;
         if (!at_end)
             continue;
         b->largest_bending = fmax(b->largest_bending, bending);
@@ -406,6 +407,7 @@ static void begin_result(struct wb_harness_run *run, struct wb_harness_step_resu
     for (int i = 0; i < run->plan->n_branches; i++)
         result->branches[i] = (struct wb_harness_branch_result){
             .least_radius = (double)INFINITY,
+            .tightest_radius = (double)INFINITY,
             .largest_bending_so_far = run->own.largest_bending[i],
         };
 }

@@ -35,6 +35,7 @@ struct wb_harness_force {
 
 struct wb_harness_branch_result {
     double least_radius, at;       /* m; where */
+    double tightest_radius;        /* m, on the way of the step */
     double largest_bending;        /* curvature relative to the natural shape, 1/m */
     double largest_bending_so_far; /* from the first step on */
     bool is_beyond;                /* the calibrated range */
