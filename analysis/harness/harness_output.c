@@ -363,7 +363,7 @@ static double chopped(double value)
 static void append_force(struct wb_text *text, const struct wb_harness_item *item,
                          const struct wb_harness_force *f)
 {
-    wb_text_append(text, "      %-16s %8.3g N  %8.3g N mm   largest %.3g N, %.3g N mm", item->name,
+    wb_text_append(text, "      %-16s %8.3g N  %8.4g N mm   largest %.3g N, %.4g N mm", item->name,
                    chopped(f->size), chopped(f->moment_size / WB_NMM), chopped(f->largest),
                    chopped(f->largest_moment / WB_NMM));
     if (isfinite(f->slid))
@@ -371,7 +371,7 @@ static void append_force(struct wb_text *text, const struct wb_harness_item *ite
     if (f->exceeds_force)
         wb_text_append(text, "  LIMIT EXCEEDED (%.3g N)", item->largest_force);
     if (f->exceeds_moment)
-        wb_text_append(text, "  LIMIT EXCEEDED (%.3g N mm)", item->largest_moment / WB_NMM);
+        wb_text_append(text, "  LIMIT EXCEEDED (%.4g N mm)", item->largest_moment / WB_NMM);
     wb_text_append(text, "%s\n", wb_harness_found_is_twist_sensitive(f) ? "  depends on GJ" : "");
 }
 

@@ -70,7 +70,7 @@ static void append_wires(const struct wb_harness_result_set *set, struct wb_text
     wb_text_append(text, "\nwires\n");
     for (int i = 0; i < plan->n_wires; i++) {
         const struct wb_harness_wire *const wire = &plan->wires[i];
-        wb_text_append(text, "  %-12s %s%s, %.3g mm, %.3g g/m, EI %.3g N mm2, GJ %.3g N mm2%s\n",
+        wb_text_append(text, "  %-12s %s%s, %.3g mm, %.3g g/m, EI %.4g N mm2, GJ %.4g N mm2%s\n",
                        wire->name, wire->file, wire->is_virtual ? " (virtual rig)" : "",
                        wire->diameter / WB_MM, wire->mass / WB_G, rigidity(wire) / WB_NMM2,
                        wb_harness_run_torsion(plan, i, &settings) / WB_NMM2,
@@ -110,7 +110,7 @@ static void append_items(const struct wb_harness_plan *plan, struct wb_text *tex
         if (item->largest_force > 0.0)
             wb_text_append(text, ", limit %.3g N", item->largest_force);
         if (item->largest_moment > 0.0)
-            wb_text_append(text, ", limit %.3g N mm", item->largest_moment / WB_NMM);
+            wb_text_append(text, ", limit %.4g N mm", item->largest_moment / WB_NMM);
         wb_text_append(text, "\n");
     }
 }
