@@ -178,6 +178,8 @@ assert session.stdout.read() == "" and session.wait() == 0
 PYTHON
 echo '{"quit": true}' | "$wirebench" solve harness small --follow >said 2>/dev/null || fail 'quit'
 [ "$(cat said)" = '{"quit": true}' ] || fail "quit: $(cat said)"
+printf '{"state": true}\0{"hang": true}\n' | "$wirebench" solve harness small --follow >said 2>/dev/null || fail 'NUL'
+[ "$(cat said)" = '{"error": "control characters are not allowed", "state": 0}' ] || fail "NUL: $(cut -c1-200 said)"
 echo '{"state": true}' | "$wirebench" solve harness small --follow >/dev/full 2>said
 [ $? -eq 1 ] && grep -q 'cannot be written' said || fail "a full output: $(cat said)"
 ends_with 2 '--follow writes no files' solve harness small --follow -o follow
