@@ -202,7 +202,7 @@ static void put_forces(struct wb_document *document, const struct wb_harnesses_r
     static const struct wb_document_column columns[] = {
         {"At"},
         {.heading = "Force (N)", .right = true, .wraps = true},
-        {.heading = "along, across, up (N)", .right = true, .wraps = true},
+        {.heading = "along, across, up (N)", .right = true},
         {.heading = "Elastic (N)", .right = true, .wraps = true},
         {.heading = "Largest (N)", .right = true, .wraps = true},
         {.heading = "Limit (N)", .right = true, .wraps = true},
