@@ -414,6 +414,9 @@ enum wb_status wb_config_numbers(const struct wb_config_node *sequence,
     const int length = wb_config_length(sequence);
     if (length < 0)
         return wb_config_refuse(sequence, key->name, "expected a list of numbers");
+    if (length != least && least == most)
+        return wb_config_refuse(sequence, key->name, "%d numbers given, expected %d", length,
+                                least);
     if (length < least || length > most)
         return wb_config_refuse(sequence, key->name, "%d numbers given, expected %d to %d", length,
                                 least, most);

@@ -39,6 +39,14 @@ void wb_json_destroy(struct wb_json *root)
  * which is NULL if it could not be created. */
 static struct wb_json *put(struct wb_json *list, const char *key, json_t *value)
 {
+    char message[160];
+    if (key && !json_is_object(jansson(list))) {
+        snprintf(message, sizeof message, "JSON: '%.80s' is set in a value that is not an object",
+                 key);
+        wb_memory_end(message);
+    }
+    if (!key && !json_is_array(jansson(list)))
+        wb_memory_end("JSON: an item is appended to a value that is not an array");
     const int failed = key ? json_object_set_new(jansson(list), key, value)
                            : json_array_append_new(jansson(list), value);
     return own(wb_memory_need(failed ? NULL : value));

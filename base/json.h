@@ -3,8 +3,8 @@
  *
  * Functions that build or format a document return no status. If memory runs out, or a member is
  * set in a value that is not an object (appended to one that is not an array), they end as
- * base/memory.h describes. Numbers that are not finite become null. Keys keep the order in which
- * they were set.
+ * base/memory.h describes, with a message that says which. Numbers that are not finite become null.
+ * Keys keep the order in which they were set.
  */
 #ifndef WB_BASE_JSON_H
 #define WB_BASE_JSON_H

@@ -1,6 +1,7 @@
 #include "base/memory.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,19 +27,24 @@ bool wb_memory_is_guarded(void)
     return innermost;
 }
 
-static _Noreturn void end(size_t count, size_t size)
+void wb_memory_end(const char *message)
 {
     struct wb_memory_guard *const guard = innermost;
     wb_log_set_gravest(WB_LOG_ERROR);
-    if (size > 0)
-        wb_error("out of memory: no %zu x %zu bytes", count, size);
-    else
-        wb_error("out of memory");
+    wb_error("%s", message);
     if (!guard)
         exit(EXIT_FAILURE);
     wb_memory_guard_end();
     wb_log_set_gravest(guard->gravest);
     longjmp(guard->target, 1);
+}
+
+static _Noreturn void end(size_t count, size_t size)
+{
+    char message[80] = "out of memory";
+    if (size > 0)
+        snprintf(message, sizeof message, "out of memory: no %zu x %zu bytes", count, size);
+    wb_memory_end(message);
 }
 
 enum wb_status wb_memory_try(enum wb_status (*run)(void *context), void *context)

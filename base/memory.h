@@ -42,6 +42,10 @@ char *wb_memory_text(const char *text) __attribute__((returns_nonnull));
 /* Returns `block`, which another library allocated; ends the program, as above, if it is NULL. */
 void *wb_memory_need(void *block) __attribute__((returns_nonnull));
 
+/* Ends the program with this message, or the call below wb_memory_try(), as a failed allocation
+ * does: for a mistake in the program after which there is no result. */
+_Noreturn void wb_memory_end(const char *message);
+
 /* A list of blocks; initially all zero. */
 struct wb_memory {
     void **blocks; /* (n), owned */

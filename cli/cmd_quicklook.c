@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/datasets.h"
 #include "cli/file_kind.h"
+#include "cli/finding.h"
 
 #define WB_LOG_DOMAIN "quicklook"
 
@@ -60,6 +61,7 @@ static void print_harness(const struct wb_harness_result_set *set,
                           const struct wb_command_common *options)
 {
     struct wb_text text = {0};
+    char figure[WB_PATH];
     if (options->json) {
         struct wb_json *const root = wb_json_create();
         wb_json_set_text(root, "folder", options->output);
@@ -70,6 +72,11 @@ static void print_harness(const struct wb_harness_result_set *set,
     wb_harness_quicklook_summary(set, &text);
     printf("%s\nwritten to %s\n", wb_text_string(&text), options->output);
     wb_text_release(&text);
+    snprintf(figure, sizeof figure, "%s/shape.svg", options->output);
+    struct wb_finding finding = {.figure = figure};
+    wb_text_append(&finding.found, "%s: free of stress, as the file describes it", set->plan->name);
+    wb_finding_append_command(&finding.next, "wirebench solve harness %s", options->input);
+    wb_finding_print(&finding);
 }
 
 static int look_at_harness(const char *path, const struct wb_command_common *options)

@@ -92,10 +92,10 @@ static void take_argument(struct argp_state *state, const char *argument,
         argp_error(state, "one model at a time: unexpected argument '%s'", argument);
     const int kind = find_kind(argument);
     if (kind < 0) {
-        argp_error(
-            state,
-            "unknown model '%s': expected cantilever, wire3d, wire1d, bundle, bending3p or harness",
-            argument);
+        argp_error(state,
+                   "unknown model '%s': expected cantilever, wire3d, wire1d, bundle, bending3p or "
+                   "harness%s",
+                   argument, wb_file_exists(argument) ? ", and then a file" : "");
         return;
     }
     s->kind = 1U << kind;

@@ -47,7 +47,9 @@ static const struct {
                           "--conductor-diameter-mm D"},
     [WB_FILE_MODEL] = {"model", "a model file", "wirebench solve wire1d %s -o DATASET"},
     [WB_FILE_BUNDLE] = {"bundle", "a bundle file", "wirebench solve bundle %s -o DATASET"},
-    [WB_FILE_HARNESS] = {"harness", "a harness file", "wirebench solve harness %s -o DIR"},
+    [WB_FILE_HARNESS] = {"harness", "a harness file",
+                         "wirebench quicklook %s -o DIR; wirebench solve harness %s -o DIR; "
+                         "wirebench report with a campaign file of `kind: harness`"},
     [WB_FILE_MACHINE] = {"machine", "a machine file",
                          "wirebench import force FILE --specimen SPECIMEN.yaml --machine %s -o "
                          "DATASET"},

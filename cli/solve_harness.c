@@ -66,6 +66,18 @@ static void warn_not_converged(const struct wb_harness_result_set *set)
                 last->problem);
 }
 
+/* Wires whose tests were made on a virtual rig. */
+static void append_virtual(struct wb_text *text, const struct wb_harness_plan *plan)
+{
+    const char *between = "; calibrated on a virtual rig: ";
+    for (int i = 0; i < plan->n_wires; i++) {
+        if (!plan->wires[i].is_virtual)
+            continue;
+        wb_text_append(text, "%s%s", between, plan->wires[i].name);
+        between = ", ";
+    }
+}
+
 static void append_trust(struct wb_text *text, const struct wb_harness_result_set *set)
 {
     const struct wb_harness_plan *const plan = set->plan;
@@ -83,6 +95,10 @@ static void append_trust(struct wb_text *text, const struct wb_harness_result_se
     }
     if (between[0] == ',')
         wb_text_append(text, " bent beyond the calibration");
+    if (found.n_twist > 0)
+        wb_text_append(text, "; %d of %d items depend on GJ, which is not measured", found.n_twist,
+                       plan->n_items);
+    append_virtual(text, plan);
     wb_text_append(text, "; computed, not compared with a measurement");
 }
 

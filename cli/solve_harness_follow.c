@@ -31,11 +31,16 @@ enum wb_status wb_solve_harness_follow(const struct wb_harness_plan *plan,
     struct wb_harness_session *session;
     char *line = NULL;
     size_t room = 0;
+    ssize_t length;
     WB_TRY(wb_harness_session_create(&session, plan, settings));
     enum wb_status status = WB_OK;
     bool goes_on = true;
-    while (status == WB_OK && goes_on && !wb_interrupted() && getline(&line, &room, stdin) >= 0) {
+    while (status == WB_OK && goes_on && !wb_interrupted() &&
+           (length = getline(&line, &room, stdin)) >= 0) {
         struct wb_text answer = {0};
+        /* What follows a NUL would be left out: no such line is valid with this in its place. */
+        for (ssize_t i = 0; i < length; i++)
+            line[i] = line[i] ? line[i] : '\1';
         goes_on = wb_harness_follow_answer(session, line, watch, NULL, &answer);
         status = print(&answer);
     }

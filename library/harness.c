@@ -70,6 +70,7 @@ static const struct wb_column_kind force_kinds[] = {
     {"largest_moment_Nm", "N m", WB_COLUMN_REAL},
     {"exceeds_force", "1", WB_COLUMN_INTEGER},
     {"exceeds_moment", "1", WB_COLUMN_INTEGER},
+    {"slid_m", "m", WB_COLUMN_REAL},
 };
 
 static const struct wb_column_kind branch_kinds[] = {
@@ -80,6 +81,7 @@ static const struct wb_column_kind branch_kinds[] = {
     {"largest_bending_so_far_1_m", "1/m", WB_COLUMN_REAL},
     {"beyond_calibration", "1", WB_COLUMN_INTEGER},
     {"exceeds_radius", "1", WB_COLUMN_INTEGER},
+    {"tightest_radius_m", "m", WB_COLUMN_REAL},
 };
 
 static void add_shapes(const struct wirebench_harness *h, struct wb_columns *table)
@@ -149,6 +151,7 @@ static void add_forces(const struct wirebench_harness *h, struct wb_columns *tab
             {.real = f->largest_moment},
             {.integer = f->exceeds_force},
             {.integer = f->exceeds_moment},
+            {.real = f->slid},
         };
         if (f->is_mounted)
             wb_columns_add_row(table, cells);
@@ -168,6 +171,7 @@ static void add_branches(const struct wirebench_harness *h, struct wb_columns *t
             {.real = b->largest_bending_so_far},
             {.integer = b->is_beyond},
             {.integer = b->exceeds_radius},
+            {.real = b->tightest_radius},
         };
         wb_columns_add_row(table, cells);
     }

@@ -15,7 +15,7 @@ export WIREBENCH_TRIALS=$trials
 names() {
     (cd "$root" && git grep -l 'count_trials(' -- 'tests/**/test_*.c' 'tests/**/fuzz_*.c') |
         sed 's|.*/||; s|^test_||; s|\.c$||'
-    (cd "$root" && git grep -l 'include "tests/daq/fuzz.*\.h"' -- 'tests/daq/fuzz_*.c') |
+    (cd "$root" && git grep -l 'include "tests/.*fuzz.*\.h"' -- 'tests/**/fuzz_*.c') |
         sed 's|.*/||; s|\.c$||'
     [ "$quick" = quick ] || printf '%s\n' storage_slow recording_flips_all
 }

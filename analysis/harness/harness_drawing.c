@@ -159,6 +159,17 @@ static const struct wb_harness_place *place_of(const struct wb_harness_result_se
     return &places[best];
 }
 
+/* Where an item is in the last shape. */
+static const double *position_of(const struct wb_harness_drawing *drawing, int item)
+{
+    const struct wb_harness_result_set *const set = drawing->set;
+    const double at = wb_harness_run_place(
+        set->plan, drawing->step < 0 ? NULL : set->results[drawing->step].forces, item);
+    return place_of(set, drawing->shapes[drawing->n_shapes - 1].places,
+                    set->plan->items[item].branch, at)
+        ->position;
+}
+
 static struct wb_figure_style style_of_item(const struct wb_harness_drawing *drawing, int item)
 {
     static const enum wb_figure_marker markers[] = {
@@ -189,22 +200,14 @@ static void add_items(struct wb_panel *panel, const struct view *view,
     const struct wb_harness_place *const places = drawing->shapes[drawing->n_shapes - 1].places;
     double x, y;
     for (int i = 0; i < plan->n_items; i++) {
-        const struct wb_harness_item *const item = &plan->items[i];
         const struct wb_figure_style style = style_of_item(drawing, i);
-        project(view,
-                place_of(set, places, item->branch, wb_harness_run_place(set, drawing->step, i))
-                    ->position,
-                &x, &y);
+        project(view, position_of(drawing, i), &x, &y);
         wb_figure_add_line(panel, NULL, 1, &x, &y, &style);
         wb_harness_labels_add_mark(labels, x, y);
     }
     for (int i = 0; i < plan->n_items; i++) {
-        const struct wb_harness_item *const item = &plan->items[i];
-        project(view,
-                place_of(set, places, item->branch, wb_harness_run_place(set, drawing->step, i))
-                    ->position,
-                &x, &y);
-        wb_harness_labels_put(labels, panel, x, y, item->name, false);
+        project(view, position_of(drawing, i), &x, &y);
+        wb_harness_labels_put(labels, panel, x, y, plan->items[i].name, false);
     }
     for (int i = 0; drawing->names_branches && i < plan->n_branches; i++) {
         project(view, place_of(set, places, i, 0.5 * plan->branches[i].length)->position, &x, &y);
@@ -212,19 +215,26 @@ static void add_items(struct wb_panel *panel, const struct view *view,
     }
 }
 
+/* Where the steps mount items, and a line to each from the item. */
 static void add_targets(struct wb_panel *panel, const struct view *view,
-                        const struct wb_harness_plan *plan, bool has_legend,
+                        const struct wb_harness_drawing *drawing, bool has_legend,
                         struct wb_harness_labels *labels)
 {
+    const struct wb_harness_plan *const plan = drawing->set->plan;
     const struct wb_figure_style style = {
         .colour = wb_palette_warning(), .marker = WB_MARKER_RING, .marker_size = 4.5};
-    struct path path = {0};
+    const struct wb_figure_style way = {
+        .colour = wb_palette_warning(), .width = 0.9, .dash = WB_DASH_DOTTED};
+    struct path path = {0}, ways = {0};
     for (int i = 0; i < plan->n_steps; i++) {
-        if (plan->steps[i].kind != WB_HARNESS_MOUNT)
+        const struct wb_harness_step *const step = &plan->steps[i];
+        if (step->kind != WB_HARNESS_MOUNT)
             continue;
-        add_place(&path, view, plan->steps[i].position);
+        add_place(&path, view, step->position);
+        add_piece(&ways, view, position_of(drawing, step->item), step->position);
         wb_harness_labels_add_mark(labels, path.x[path.n - 1], path.y[path.n - 1]);
     }
+    put_path(&ways, panel, NULL, &way);
     put_path(&path, panel, has_legend ? "mounted at" : NULL, &style);
 }
 
@@ -471,13 +481,9 @@ static void add_drops(struct wb_panel *panel, const struct view *view,
                       const struct wb_harness_drawing *drawing)
 {
     const struct wb_figure_style style = {.colour = wb_palette_rule(), .width = 0.7};
-    const struct wb_harness_place *const places = drawing->shapes[drawing->n_shapes - 1].places;
     struct path path = {0};
     for (int i = 0; i < drawing->set->plan->n_items; i++) {
-        const struct wb_harness_item *const item = &drawing->set->plan->items[i];
-        const double *const at = place_of(drawing->set, places, item->branch,
-                                          wb_harness_run_place(drawing->set, drawing->step, i))
-                                     ->position;
+        const double *const at = position_of(drawing, i);
         const double below[3] = {at[0], at[1], view->low[2]};
         add_piece(&path, view, at, below);
     }
@@ -550,7 +556,7 @@ static void add_panel(struct wb_panel *panel, const struct view *view,
         add_shape(panel, view, drawing->set, &shape, (double)NAN);
     }
     if (drawing->has_targets)
-        add_targets(panel, view, drawing->set->plan, has_legend, &labels);
+        add_targets(panel, view, drawing, has_legend, &labels);
     add_items(panel, view, drawing, &labels);
     for (int i = 0; i < drawing->set->plan->n_obstacles; i++) {
         const struct wb_harness_plan_obstacle *const obstacle = &drawing->set->plan->obstacles[i];
@@ -740,9 +746,13 @@ enum wb_status wb_harness_drawing_write(const struct wb_harness_result_set *set,
     struct wb_harness_drawing drawing;
     struct wb_figure *figure;
     char footer[160];
+    bool is_virtual = false;
     wb_harness_drawing_of_steps(&drawing, set);
-    snprintf(footer, sizeof footer, "%s: simulation, %s", set->plan->name,
-             set->settings.is_elastic ? "elastic" : "elastoplastic");
+    for (int i = 0; i < set->plan->n_wires; i++)
+        is_virtual |= set->plan->wires[i].is_virtual;
+    snprintf(footer, sizeof footer, "%s: simulation, %s%s", set->plan->name,
+             set->settings.is_elastic ? "elastic" : "elastoplastic",
+             is_virtual ? ", with wires of a virtual rig" : "");
     WB_TRY(wb_harness_drawing_create(&drawing, footer, &figure));
     const enum wb_status status = wb_figure_write_file(figure, PNG_SCALE, path);
     wb_figure_destroy(figure);

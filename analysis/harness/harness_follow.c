@@ -329,10 +329,17 @@ static const struct command {
     {"quit", false, quit},
 };
 
+static const char known_keys[] =
+    "one of the keys mount, move, release, hang, take_off, steps, undo, "
+    "snapshot, restore, state, describe and quit";
+
 /* "hang" or "take_off" as a text. */
-static enum wb_status run_word(struct line *line)
+static enum wb_status run_word(struct line *line, const char *word)
 {
     struct wb_harness_step step;
+    if (strcmp(word, "hang") != 0 && strcmp(word, "take_off") != 0)
+        return wb_config_refuse(line->map, NULL, "'%.60s': expected an object with %s", word,
+                                known_keys);
     WB_TRY(
         wb_harness_file_parse_step(wb_harness_session_plan(line->session), line->map, NULL, &step));
     return run_step(line, &step);
@@ -345,15 +352,13 @@ static enum wb_status run_line(const struct wb_config_node *map, void *into)
     const struct wb_config_node *value = NULL;
     line->map = map;
     if (wb_config_scalar(map))
-        return run_word(line);
+        return run_word(line, wb_config_scalar(map));
     for (size_t i = 0; i < WB_COUNT(commands) && !value; i++) {
         command = &commands[i];
         value = wb_config_find(map, command->key);
     }
     if (!value)
-        return wb_config_refuse(map, NULL,
-                                "expected one of the keys mount, move, release, hang, take_off, "
-                                "steps, undo, snapshot, restore, state, describe and quit");
+        return wb_config_refuse(map, NULL, "expected an object with %s", known_keys);
     const struct wb_config_node *const shapes = wb_config_find(map, "shapes");
     const struct wb_config_key row =
         WB_CONFIG_OPTIONAL_CHOICE("shapes", &line->shapes, shape_words);

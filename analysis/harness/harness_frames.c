@@ -4,15 +4,12 @@
 
 #include "analysis/harness/harness_run.h"
 
-void wb_harness_frames_create(struct wb_harness_frames *frames, int n_wanted, int n_places,
-                              struct wb_memory *memory)
+void wb_harness_frames_create(struct wb_harness_frames *frames)
 {
-    *frames =
-        (struct wb_harness_frames){.n_wanted = n_wanted, .n_places = n_places, .memory = memory};
-    frames->list = wb_memory_take(memory, (size_t)n_wanted, sizeof *frames->list);
+    frames->list = wb_memory_take(frames->memory, (size_t)frames->n_wanted, sizeof *frames->list);
 }
 
-/* The frames of the step before keep their places, which the results point to. */
+/* The frames of the step before keep their arrays, which the results point to. */
 void wb_harness_frames_begin(struct wb_harness_frames *frames, bool is_motion)
 {
     for (int i = 0; i < frames->n_wanted; i++)
@@ -22,17 +19,20 @@ void wb_harness_frames_begin(struct wb_harness_frames *frames, bool is_motion)
     frames->stride = 1;
 }
 
-static struct wb_harness_place *add(struct wb_harness_frames *frames, double fraction)
+static struct wb_harness_frame *add(struct wb_harness_frames *frames, double fraction)
 {
     struct wb_harness_frame *const frame = &frames->list[frames->n++];
     frame->fraction = fraction;
-    if (!frame->places)
+    if (!frame->places) {
         frame->places =
             wb_memory_take(frames->memory, (size_t)frames->n_places, sizeof *frame->places);
-    return frame->places;
+        frame->forces =
+            wb_memory_take(frames->memory, (size_t)frames->n_forces, sizeof *frame->forces);
+    }
+    return frame;
 }
 
-/* Drops every second frame; their places are used again. */
+/* Drops every second frame; their arrays are used again. */
 static void thin(struct wb_harness_frames *frames)
 {
     frames->n /= 2;
@@ -44,7 +44,7 @@ static void thin(struct wb_harness_frames *frames)
     }
 }
 
-struct wb_harness_place *wb_harness_frames_take(struct wb_harness_frames *frames, double fraction)
+struct wb_harness_frame *wb_harness_frames_take(struct wb_harness_frames *frames, double fraction)
 {
     const double before = frames->n > 0 ? frames->list[frames->n - 1].fraction : 0.0;
     if (frames->n_wanted < 2)
@@ -56,7 +56,7 @@ struct wb_harness_place *wb_harness_frames_take(struct wb_harness_frames *frames
         return frames->calls % frames->stride == 0 ? add(frames, frames->calls) : NULL;
     }
     if (frames->n > 0 && fraction == before)
-        return frames->list[frames->n - 1].places;
+        return &frames->list[frames->n - 1];
     const double part = fraction * frames->n_wanted * (1.0 + 1e-12);
     return fraction < 1.0 && floor(part) > floor(before * frames->n_wanted * (1.0 + 1e-12))
                ? add(frames, fraction)

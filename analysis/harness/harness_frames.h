@@ -13,27 +13,29 @@
 #include "base/memory.h"
 
 struct wb_harness_place;
+struct wb_harness_force;
 
 /* Of one step. */
 struct wb_harness_frames {
     int n_wanted; /* N: shapes of a step, with its end; below 2: the end alone */
-    int n_places;
-    struct wb_memory *memory; /* borrowed; owns the places */
+    int n_places, n_forces;
+    struct wb_memory *memory; /* borrowed; owns places and forces */
     bool is_motion;           /* the step is a release */
     int calls, stride;        /* of a motion: steps so far, and between two frames */
     int n;
     struct wb_harness_frame {
         double fraction;                 /* of the step, of a motion's steps; above 0 and below 1 */
         struct wb_harness_place *places; /* (n_places) */
+        struct wb_harness_force *forces; /* (n_forces) */
     } * list;                            /* (n_wanted) */
 };
 
-void wb_harness_frames_create(struct wb_harness_frames *frames, int n_wanted, int n_places,
-                              struct wb_memory *memory);
+/* With room for the frames. `frames` has `n_wanted`, `n_places`, `n_forces` and `memory`. */
+void wb_harness_frames_create(struct wb_harness_frames *frames);
 void wb_harness_frames_begin(struct wb_harness_frames *frames, bool is_motion);
 
-/* After an increment: the places to be filled with the current shape, or NULL. */
-struct wb_harness_place *wb_harness_frames_take(struct wb_harness_frames *frames, double fraction);
+/* After an increment: the frame to be filled with the current shape and forces, or NULL. */
+struct wb_harness_frame *wb_harness_frames_take(struct wb_harness_frames *frames, double fraction);
 
 /* Ends a step of which a fraction was completed: drops frames beyond it and sets the fractions of a
  * motion. */

@@ -350,7 +350,8 @@ static struct wb_harness_place place_of(const struct wb_harness_result_set *set,
                                         const struct wb_harness_item *item)
 {
     const struct wb_harness_place *const places = shape->places;
-    const double at = wb_harness_run_place(set, shape->step, (int)(item - set->plan->items));
+    const double at =
+        wb_harness_run_place(set->plan, shape->forces, (int)(item - set->plan->items));
     const int branch = item->branch < 0 ? 0 : item->branch;
     int i = 0;
     while (places[i].branch != branch)

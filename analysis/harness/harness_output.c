@@ -75,6 +75,8 @@ static const struct wb_key branch_rows[] = {
     {"name", TEXT, "branch"},
     {"least_radius_mm", BRANCH(least_radius) | UNKNOWN, "least bend radius; null: straight"},
     {"at_mm", BRANCH(at), "where it is"},
+    {"tightest_radius_mm", BRANCH(tightest_radius) | UNKNOWN,
+     "least bend radius during the step; null: straight"},
     {"largest_bending_1_m", BRANCH(largest_bending),
      "largest curvature relative to the natural shape"},
     {"largest_bending_so_far_1_m", BRANCH(largest_bending_so_far),
@@ -313,18 +315,19 @@ static enum wb_status write_forces(const struct wb_harness_result_set *set, cons
                                         "moment_across_N_mm",
                                         "moment_up_N_mm",
                                         "largest_force_N",
-                                        "largest_moment_N_mm"};
+                                        "largest_moment_N_mm",
+                                        "slid_mm"};
     struct wb_text text = {0};
     wb_csv_table_append_header(&text, names, WB_COUNT(names));
-    for (int i = 0; i < set->n_steps; i++) {
-        char step[16];
-        snprintf(step, sizeof step, "%d", i + 1);
+    for (int i = 1; i < set->n_shapes; i++) {
+        char step[WB_NUMBER_TEXT];
+        (void)wb_number_format(set->shapes[i].time, step);
         for (int k = 0; k < set->plan->n_items + set->plan->n_obstacles; k++) {
-            const struct wb_harness_force *const f = &set->results[i].forces[k];
+            const struct wb_harness_force *const f = &set->shapes[i].forces[k];
             const struct column columns[] = {
                 {f->size, 0},        {f->force[0], 0},       {f->force[1], 0},  {f->force[2], 0},
                 {f->moment_size, 3}, {f->moment[0], 3},      {f->moment[1], 3}, {f->moment[2], 3},
-                {f->largest, 0},     {f->largest_moment, 3},
+                {f->largest, 0},     {f->largest_moment, 3}, {f->slid, 3},
             };
             if (f->is_mounted)
                 append_row(&text, step, wb_harness_file_holder(set->plan, k), columns,
@@ -353,10 +356,42 @@ enum wb_status wb_harness_output_write(const struct wb_harness_result_set *set, 
 
 /* --- the terminal --- */
 
+static const double least_residual = 1e-6; /* m; less is round-off */
+
 /* Round-off is 0. */
 static double chopped(double value)
 {
     return value < 1e-8 ? 0.0 : value;
+}
+
+/* Obstacles have no limits. */
+static void append_force(struct wb_text *text, const struct wb_harness_plan *plan, int holder,
+                         const struct wb_harness_force *f)
+{
+    const struct wb_harness_item *const item = &plan->items[holder];
+    wb_text_append(text, "      %-16s %8.3g N  %8.4g N mm   largest %.3g N, %.4g N mm",
+                   wb_harness_file_holder(plan, holder), chopped(f->size),
+                   chopped(f->moment_size / WB_NMM), chopped(f->largest),
+                   chopped(f->largest_moment / WB_NMM));
+    if (isfinite(f->slid))
+        wb_text_append(text, "  slid %.3g mm", f->slid / WB_MM);
+    if (f->exceeds_force)
+        wb_text_append(text, "  LIMIT EXCEEDED (%.3g N)", item->largest_force);
+    if (f->exceeds_moment)
+        wb_text_append(text, "  LIMIT EXCEEDED (%.4g N mm)", item->largest_moment / WB_NMM);
+    wb_text_append(text, "%s\n", wb_harness_found_is_twist_sensitive(f) ? "  depends on GJ" : "");
+}
+
+static void append_radii(struct wb_text *text, const struct wb_harness_plan *plan,
+                         const struct wb_harness_step_result *step)
+{
+    for (int b = 0; b < plan->n_branches; b++) {
+        if (step->branches[b].exceeds_radius)
+            wb_text_append(text,
+                           "      %-16s bend radius down to %.3g mm  LIMIT EXCEEDED (%.4g mm)\n",
+                           plan->branches[b].name, step->branches[b].tightest_radius / WB_MM,
+                           plan->branches[b].least_radius / WB_MM);
+    }
 }
 
 void wb_harness_output_append_table(struct wb_text *text, const struct wb_harness_result_set *set)
@@ -376,19 +411,10 @@ void wb_harness_output_append_table(struct wb_text *text, const struct wb_harnes
                            plan->branches[tightest].name, b->at / WB_MM);
         wb_text_append(text, "\n");
         for (int k = 0; k < plan->n_items + plan->n_obstacles; k++) {
-            const struct wb_harness_force *const f = &step->forces[k];
-            if (!f->is_mounted)
-                continue;
-            char slid[32] = "";
-            if (isfinite(f->slid))
-                snprintf(slid, sizeof slid, "  slid %.3g mm", f->slid / WB_MM);
-            wb_text_append(
-                text, "      %-16s %8.3g N  %8.3g N mm   at most %.3g N, %.3g N mm%s%s%s\n",
-                wb_harness_file_holder(plan, k), chopped(f->size), chopped(f->moment_size / WB_NMM),
-                chopped(f->largest), chopped(f->largest_moment / WB_NMM), slid,
-                f->exceeds_force || f->exceeds_moment ? "  LIMIT EXCEEDED" : "",
-                wb_harness_found_is_twist_sensitive(f) ? "  depends on GJ" : "");
+            if (step->forces[k].is_mounted)
+                append_force(text, plan, k, &step->forces[k]);
         }
+        append_radii(text, plan, step);
         for (int s = 0; s < step->n_snaps; s++)
             wb_text_append(text, "      snap at %.3g of the step: %s moves by %.3g mm\n",
                            step->snaps[s].fraction, branch_name(plan, step->snap_branch[s]),
@@ -405,7 +431,11 @@ void wb_harness_output_append_finding(struct wb_text *text, const struct wb_harn
                    plan->name, set->settings.is_elastic ? "elastic" : "elastoplastic",
                    found.force.value, plan->items[found.force.of].name, found.force.step + 1,
                    plan->steps[found.force.step].name);
-    if (found.is_taken_off)
-        wb_text_append(text, "; taken off, it keeps a shape up to %.4g mm from that before (%s)",
+    if (found.is_taken_off && found.residual.value < least_residual)
+        wb_text_append(text, "; taken off, it returns to its stress-free shape");
+    else if (found.is_taken_off)
+        wb_text_append(text,
+                       "; taken off, its residual shape is up to %.4g mm from the stress-free "
+                       "one (%s)",
                        found.residual.value / WB_MM, plan->branches[found.residual.of].name);
 }

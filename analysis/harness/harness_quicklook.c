@@ -15,6 +15,13 @@ static const char *const kinds[] = {
     [WB_HARNESS_CONNECTOR] = "connector",
     [WB_HARNESS_CLIP] = "clip",
 };
+/* As in the harness file. */
+static const char *const holds[] = {
+    [WB_HARNESS_POINT] = "holds point",
+    [WB_HARNESS_AXIS] = "holds axis",
+    [WB_HARNESS_FIXED] = "holds all",
+    [WB_HARNESS_SLIDE] = "lets the wire slide",
+};
 
 enum wb_status wb_harness_quicklook_compute(struct wb_harness_result_set *set,
                                             struct wb_harness_plan *plan)
@@ -63,9 +70,9 @@ static void append_wires(const struct wb_harness_result_set *set, struct wb_text
     wb_text_append(text, "\nwires\n");
     for (int i = 0; i < plan->n_wires; i++) {
         const struct wb_harness_wire *const wire = &plan->wires[i];
-        wb_text_append(text, "  %-12s %s, %.3g mm, %.3g g/m, EI %.3g N mm2, GJ %.3g N mm2%s\n",
-                       wire->name, wire->file, wire->diameter / WB_MM, wire->mass / WB_G,
-                       rigidity(wire) / WB_NMM2,
+        wb_text_append(text, "  %-12s %s%s, %.3g mm, %.3g g/m, EI %.4g N mm2, GJ %.4g N mm2%s\n",
+                       wire->name, wire->file, wire->is_virtual ? " (virtual rig)" : "",
+                       wire->diameter / WB_MM, wire->mass / WB_G, rigidity(wire) / WB_NMM2,
                        wb_harness_run_torsion(plan, i, &settings) / WB_NMM2,
                        wire->torsional_stiffness > 0.0 ? "" : " (not measured)");
     }
@@ -80,7 +87,7 @@ static void append_branches(const struct wb_harness_plan *plan, struct wb_text *
                        plan->wires[b->wire].name, b->length / WB_MM,
                        b->n_curve > 0 ? ", curved" : "");
         if (b->least_radius > 0.0)
-            wb_text_append(text, ", least radius %.3g mm", b->least_radius / WB_MM);
+            wb_text_append(text, ", limit of the bend radius %.3g mm", b->least_radius / WB_MM);
         wb_text_append(text, "\n");
     }
 }
@@ -94,12 +101,16 @@ static void append_items(const struct wb_harness_plan *plan, struct wb_text *tex
         if (item->branch >= 0)
             wb_text_append(text, " on %s at %.4g mm", plan->branches[item->branch].name,
                            item->at / WB_MM);
+        if (item->kind == WB_HARNESS_CLIP)
+            wb_text_append(text, ", %s", holds[item->hold]);
+        if (item->hold == WB_HARNESS_SLIDE)
+            wb_text_append(text, ", friction %.3g", item->friction);
         if (item->mass > 0.0)
             wb_text_append(text, ", %.3g g", item->mass / WB_G);
         if (item->largest_force > 0.0)
-            wb_text_append(text, ", at most %.3g N", item->largest_force);
+            wb_text_append(text, ", limit %.3g N", item->largest_force);
         if (item->largest_moment > 0.0)
-            wb_text_append(text, ", at most %.3g N mm", item->largest_moment / WB_NMM);
+            wb_text_append(text, ", limit %.4g N mm", item->largest_moment / WB_NMM);
         wb_text_append(text, "\n");
     }
 }
@@ -156,6 +167,7 @@ static void describe_wires(const struct wb_harness_result_set *set, struct wb_js
         wb_json_set_text(item, "name", wire->name);
         wb_json_set_text(item, "file", wire->file);
         wb_json_set_text(item, "sha256", wire->sha256);
+        wb_json_set_boolean(item, "virtual_rig", wire->is_virtual);
         wb_json_set_number(item, "flexural_rigidity_N_mm2", rigidity(wire) / WB_NMM2);
         wb_json_set_number(item, "torsional_stiffness_N_mm2",
                            wb_harness_run_torsion(plan, i, &settings) / WB_NMM2);

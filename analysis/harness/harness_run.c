@@ -276,9 +276,8 @@ static void find_obstacle_force(const struct wb_harness_run *run, int i, double 
         force[3 + k] -= moment[k];
 }
 
-static void take_obstacle_force(const struct wb_harness_run *run, int i)
+static void take_obstacle_force(const struct wb_harness_run *run, int i, struct wb_harness_force *f)
 {
-    struct wb_harness_force *const f = &run->result->forces[run->plan->n_items + i];
     double R[9], force[6];
     find_obstacle_force(run, i, force);
     wb_rod_element_matrix(run->plan->obstacles[i].body.rotation, R);
@@ -290,10 +289,11 @@ static void take_obstacle_force(const struct wb_harness_run *run, int i)
     f->slid = f->soft_force = (double)NAN;
 }
 
-static void take_forces(const struct wb_harness_run *run)
+/* Those of the current state; `largest` and limits stay. */
+static void take_forces(const struct wb_harness_run *run, struct wb_harness_force *forces)
 {
     for (int i = 0; i < run->plan->n_items; i++) {
-        struct wb_harness_force *const f = &run->result->forces[i];
+        struct wb_harness_force *const f = &forces[i];
         double R[9], reaction[6];
         f->is_mounted = is_held(run, i);
         if (!f->is_mounted)
@@ -313,7 +313,7 @@ static void take_forces(const struct wb_harness_run *run)
         f->soft_force = (double)NAN;
     }
     for (int i = 0; i < run->plan->n_obstacles; i++)
-        take_obstacle_force(run, i);
+        take_obstacle_force(run, i, &forces[run->plan->n_items + i]);
 }
 
 /* Bend radii and curvatures of the current state. */
@@ -329,7 +329,8 @@ static void watch_branches(struct wb_harness_run *run, bool at_end)
         double *const so_far = &run->own.largest_bending[point.branch];
         *so_far = b->largest_bending_so_far = fmax(*so_far, bending);
         b->is_beyond = b->largest_bending_so_far > run->plan->wires[plan->wire].largest_curvature;
-        b->exceeds_radius |= plan->least_radius > 0.0 && radius < plan->least_radius;
+        b->tightest_radius = fmin(b->tightest_radius, radius);
+        b->exceeds_radius |= radius < plan->least_radius;
         if (!at_end)
             continue;
         b->largest_bending = fmax(b->largest_bending, bending);
@@ -363,9 +364,13 @@ static bool observe(void *context, double fraction)
         f->largest_moment = fmax(f->largest_moment, wb_vec3_length(force + 3));
     }
     watch_branches(run, false);
-    struct wb_harness_place *const frame = wb_harness_frames_take(&run->frames, fraction);
-    if (frame)
-        take_places(run, frame);
+    struct wb_harness_frame *const frame = wb_harness_frames_take(&run->frames, fraction);
+    if (frame) {
+        memcpy(frame->forces, run->result->forces,
+               count_holders(run->plan) * sizeof *frame->forces);
+        take_forces(run, frame->forces);
+        take_places(run, frame->places);
+    }
     return !run->watch || run->watch(run->context, fraction);
 }
 
@@ -447,7 +452,7 @@ static void take_step(struct wb_harness_run *run, const struct wb_harness_result
         r->snap_branch[i] = wb_harness_place_of(run->harness, r->snaps[i].joint, &r->snap_at[i]);
     r->elastic = wb_harness_elastic_energy(run->harness);
     r->plastic = wb_harness_plastic_work(run->harness);
-    take_forces(run);
+    take_forces(run, r->forces);
     watch_branches(run, true);
     take_places(run, r->places);
 }
@@ -468,6 +473,7 @@ static void begin_result(struct wb_harness_run *run, struct wb_harness_step_resu
     for (int i = 0; i < run->plan->n_branches; i++)
         result->branches[i] = (struct wb_harness_branch_result){
             .least_radius = (double)INFINITY,
+            .tightest_radius = (double)INFINITY,
             .largest_bending_so_far = run->own.largest_bending[i],
         };
 }
@@ -574,12 +580,13 @@ static bool watch_step(void *context, double fraction)
 }
 
 static void add_shape(struct wb_harness_result_set *set, int step, double fraction,
-                      const struct wb_harness_place *places)
+                      const struct wb_harness_place *places, const struct wb_harness_force *forces)
 {
     set->shapes[set->n_shapes++] = (struct wb_harness_shape){
         .time = round((step + fraction) * 1e6) / 1e6,
         .step = step,
         .places = places,
+        .forces = forces,
     };
 }
 
@@ -588,8 +595,9 @@ static void add_shapes(struct wb_harness_result_set *set, struct wb_harness_fram
 {
     wb_harness_frames_end(frames, result->fraction);
     for (int i = 0; i < frames->n; i++)
-        add_shape(set, step, frames->list[i].fraction, frames->list[i].places);
-    add_shape(set, step, 1.0, result->places);
+        add_shape(set, step, frames->list[i].fraction, frames->list[i].places,
+                  frames->list[i].forces);
+    add_shape(set, step, 1.0, result->places, result->forces);
 }
 
 static void compute(struct wb_harness_result_set *set, struct wb_harness_run *run,
@@ -609,8 +617,12 @@ static void compute(struct wb_harness_result_set *set, struct wb_harness_run *ru
     set->natural = natural.places;
     set->results = wb_memory_take(set->memory, (size_t)plan->n_steps, sizeof *set->results);
     set->shapes = wb_memory_take(set->memory, most_shapes, sizeof *set->shapes);
-    add_shape(set, -1, 1.0, set->natural);
-    wb_harness_frames_create(frames, set->settings.frames, set->n_places, set->memory);
+    add_shape(set, -1, 1.0, set->natural, natural.forces);
+    *frames = (struct wb_harness_frames){.n_wanted = set->settings.frames,
+                                         .n_places = set->n_places,
+                                         .n_forces = (int)count_holders(plan),
+                                         .memory = set->memory};
+    wb_harness_frames_create(frames);
     set->converged = true;
     for (int i = 0; i < plan->n_steps && set->converged; i++) {
         struct wb_harness_step_result *const result = &set->results[i];
@@ -625,10 +637,11 @@ static void compute(struct wb_harness_result_set *set, struct wb_harness_run *ru
     }
 }
 
-double wb_harness_run_place(const struct wb_harness_result_set *set, int step, int item)
+double wb_harness_run_place(const struct wb_harness_plan *plan,
+                            const struct wb_harness_force *forces, int item)
 {
-    const double slid = step < 0 ? 0.0 : set->results[step].forces[item].slid;
-    return set->plan->items[item].at + (isfinite(slid) ? slid : 0.0);
+    const double slid = forces ? forces[item].slid : 0.0;
+    return plan->items[item].at + (isfinite(slid) ? slid : 0.0);
 }
 
 static bool has_default_torsion(const struct wb_harness_plan *plan)

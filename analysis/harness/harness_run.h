@@ -36,6 +36,7 @@ struct wb_harness_force {
 
 struct wb_harness_branch_result {
     double least_radius, at;       /* m; where */
+    double tightest_radius;        /* m, on the way of the step */
     double largest_bending;        /* curvature relative to the natural shape, 1/m */
     double largest_bending_so_far; /* from the first step on */
     bool is_beyond;                /* the calibrated range */
@@ -76,6 +77,7 @@ struct wb_harness_shape {
     double time; /* steps completed, with the fraction of the step, to 1e-6 */
     int step;    /* index; -1: before the first step, free of stress */
     const struct wb_harness_place *places; /* (n_places) */
+    const struct wb_harness_force *forces; /* (n_items) of a frame, `largest` up to there */
 };
 
 struct wb_harness_result_set {
@@ -131,9 +133,10 @@ wb_harness_run_compute(struct wb_harness_result_set *set, const struct wb_harnes
                        bool (*progress)(void *context, int step, double fraction), void *context);
 void wb_harness_run_release(struct wb_harness_result_set *set); /* accepts a zeroed one */
 
-/* Where along its branch an item is after a step (-1: before the first), m: beyond its place in the
- * file where the wire slid. */
-double wb_harness_run_place(const struct wb_harness_result_set *set, int step, int item);
+/* Where along its branch an item is with the forces of a step or shape (NULL: before the first), m:
+ * beyond its place in the file where the wire slid. */
+double wb_harness_run_place(const struct wb_harness_plan *plan,
+                            const struct wb_harness_force *forces, int item);
 
 /* GJ of a wire as computed, N m2. */
 double wb_harness_run_torsion(const struct wb_harness_plan *plan, int wire,

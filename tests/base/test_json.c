@@ -6,6 +6,7 @@
 
 #include "base/json.h"
 #include "base/memory.h"
+#include "tests/messages.h"
 
 static void a_document_reads_back(void **state)
 {
@@ -91,16 +92,19 @@ static enum wb_status append_item(void *value)
     return WB_OK;
 }
 
-static void a_value_that_cannot_be_set_fails_as_an_allocation(void **state)
+static void a_value_of_the_wrong_kind_ends_the_call_with_its_message(void **state)
 {
     (void)state;
     struct wb_json *const root = wb_json_create();
     struct wb_json *const list = wb_json_set_array(root, "list");
-    wb_log_set_sink(discard_message, NULL);
+    keep_messages();
     assert_int_equal(wb_memory_try(set_member, list), WB_ERR_MEMORY);
+    assert_message("'a key' is set in a value that is not an object");
     assert_int_equal(wb_memory_try(append_item, root), WB_ERR_MEMORY);
+    assert_message("not an array");
     assert_int_equal(wb_memory_try(set_member, NULL), WB_ERR_MEMORY);
-    wb_log_set_sink(NULL, NULL);
+    assert_message("not an object");
+    release_messages();
     char *const text = wb_json_format(root);
     assert_string_equal(text, "{\n  \"list\": []\n}\n");
     free(text);
@@ -242,7 +246,7 @@ int main(void)
         cmocka_unit_test(a_document_reads_back),
         cmocka_unit_test(unsupported_values_become_null_or_ascii),
         cmocka_unit_test(numbers_are_as_short_as_they_can_be),
-        cmocka_unit_test(a_value_that_cannot_be_set_fails_as_an_allocation),
+        cmocka_unit_test(a_value_of_the_wrong_kind_ends_the_call_with_its_message),
         cmocka_unit_test(setting_again_replaces_and_keeps_the_order),
         cmocka_unit_test(invalid_json_is_rejected),
         cmocka_unit_test(documents_are_compared_number_by_number),

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Checks a scene of `wirebench solve harness --gltf` against the table of shapes and the harness file.
 
-Usage: gltf.py SCENE.glb SHAPES.csv HARNESS.yaml
+Usage: gltf.py SCENE.glb SHAPES.csv HARNESS.yaml, with FORCES.csv beside the table
 """
 import csv
 import hashlib
 import json
+import os
 import struct
 import sys
 
@@ -91,6 +92,8 @@ with open(shapes_path) as file:
         shape.setdefault(row["branch"], []).append(
             place + direction + [curvature, float(row["s_mm"])]
         )
+with open(os.path.join(os.path.dirname(shapes_path), "forces.csv")) as file:
+    slid = {(row["step"], row["item"]): row["slid_mm"] for row in csv.DictReader(file)}
 animation = scene["animations"][0]
 channels = {}
 for channel in animation["channels"]:
@@ -159,7 +162,7 @@ for index, name in enumerate(items):
     rotations = channels[node, "rotation"]
     assert np.allclose(np.linalg.norm(rotations, axis=1), 1, atol=1e-6)
     assert ((rotations[1:] * rotations[:-1]).sum(1) > 0).all()
-    for k, shape in enumerate(shapes.values()):
+    for k, (time, shape) in enumerate(shapes.items()):
         middle = channels[node, "translation"][k]
         if name in masses:
             end = np.array(shape[ends[name]][-1])
@@ -170,7 +173,8 @@ for index, name in enumerate(items):
         elif index > 0:  # a clip: on its wire
             clip = next(c for c in harness["clips"] if c["name"] == name)
             way = np.array(shape[clip["branch"]])
-            expected = [np.interp(clip["at_mm"], way[:, 7], way[:, k]) / 1e3 for k in range(3)]
+            at = clip["at_mm"] + float(slid.get((time, name)) or 0)
+            expected = [np.interp(at, way[:, 7], way[:, k]) / 1e3 for k in range(3)]
             assert np.allclose(middle, expected, atol=1e-6)
 box = scene["meshes"][nodes[-1]["mesh"]]["primitives"][0]
 points, faces = arrays[box["attributes"]["POSITION"]], arrays[box["indices"]].astype(int)

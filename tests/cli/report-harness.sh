@@ -53,15 +53,17 @@ run 1 fixtures/campaigns/harness.yaml -o r
 grep -q -- --force err || fail "an existing report: $(cat err)"
 
 # A harness of one's own, which keeps its limits, beside its report.
-sed 's/, most_force_N: [0-9]*//' "$root/fixtures/harnesses/small.yaml" >own.yaml
+sed 's/, most_force_N: [0-9]*//; s/holds: axis/holds: slide/; /mount: C1/s/, direction.*/}/' \
+    "$root/fixtures/harnesses/small.yaml" >own.yaml
 printf 'kind: harness\ntitle: Own\nharness: own.yaml\n' >own-report.yaml
 run 0 own-report.yaml -o own
 grep -qF 'The only limit is kept' own/report.html || fail 'the limit of the radius'
+grep -q 'Since its mount [0-9.]* mm of wire slid through C1 towards the end of B1' own/report.html || fail 'the slid wire'
 
 # The report of a harness has no datasets; a harness file is no campaign, and a campaign no harness file.
 run 1 own-report.yaml --stale
 run 1 own.yaml -o x
-grep -q 'is a harness file, expected a campaign file; for this file: wirebench solve harness' err || fail "$(cat err)"
+grep -q 'is a harness file, expected a campaign file; for this file: wirebench quicklook' err || fail "$(cat err)"
 "$wirebench" solve harness own-report.yaml 2>err && fail 'a campaign was solved'
 grep -q 'is a campaign file, expected a harness file; for this file: wirebench report' err || fail "$(cat err)"
 "$wirebench" quicklook own-report.yaml -o x 2>err && fail 'a campaign was looked at'

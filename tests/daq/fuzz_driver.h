@@ -4,7 +4,7 @@
 #define WB_TESTS_DAQ_FUZZ_DRIVER_H
 
 #include "daq/protocol/drivers.h"
-#include "tests/daq/fuzz.h"
+#include "tests/fuzz.h"
 
 struct fuzz_total {
     uint64_t n, hash;

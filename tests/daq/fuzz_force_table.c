@@ -3,7 +3,7 @@
 
 #include "base/reason.h"
 #include "daq/take/force_table.h"
-#include "tests/daq/fuzz.h"
+#include "tests/fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)
 {

@@ -1,6 +1,6 @@
 /* Any bytes are read as a table or rejected; all cells are within the table. Input: a byte of
  * settings, then the bytes of the file. */
-#include "tests/daq/fuzz.h"
+#include "tests/fuzz.h"
 
 #include <math.h>
 

@@ -6,9 +6,9 @@
 #include <math.h>
 
 #include "daq/take/take_reader.h"
-#include "tests/daq/fuzz.h"
 #include "tests/daq/take_example.h"
 #include "tests/daq/take_missing.h"
+#include "tests/fuzz.h"
 
 static inline void fuzz_check_take(const struct wb_take *take)
 {

@@ -744,6 +744,7 @@ static void a_harness_is_moved_and_the_move_undone_bit_for_bit(void **state)
     assert_close(column_of(harness, "items", "z_m").reals[3], 0.03, 1e-10);
     assert_int_equal(column_of(harness, "items", "mounted").integers[1], 0);
     assert_int_equal(column_of(harness, "forces", "force_N").n, 2);
+    assert_true(isnan(column_of(harness, "forces", "slid_m").reals[1]));
     assert_int_equal(column_of(harness, "branches", "least_radius_m").n, 3);
     assert_success(wirebench_harness_undo(harness, 1));
     for (int i = 0; i < 3; i++)

@@ -226,6 +226,22 @@ class Harness(unittest.TestCase):
             self.assertTrue(harness.info.is_converged)
             self.assertEqual(harness.info.step, "take_off")
 
+    def test_wire_that_slides_through_a_clip_has_its_length(self):
+        with open(os.path.join(SOURCE, "fixtures", "harnesses", "small.yaml")) as file:
+            text = file.read().replace("holds: axis", "holds: slide")
+        text = re.sub(r"(mount: C1.*\]), direction.*", r"\1}", text)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "slides.yaml")
+            with open(path, "w") as file:
+                file.write(text)
+            with wirebench.Harness(path) as harness:
+                harness.mount("C1", [0.19, 0, 0.03])
+                harness.move("C1", [0.15, 0, 0.03])
+                forces = harness.table("forces")
+        slid = dict(zip(forces["item"], forces["slid_m"]))
+        self.assertTrue(math.isnan(slid["R"]))
+        self.assertLess(abs(slid["C1"] + 0.047), 0.01)  # towards the end: 200 mm of wire, 153 mm away
+
     def test_steps_of_the_file_are_those_of_the_methods(self):
         one, other = wirebench.Harness("small"), wirebench.Harness("small")
         for step in one.planned_steps[:2]:

@@ -91,6 +91,17 @@ static void append_range(struct wb_text *text, const struct wb_harnesses_results
     wb_text_release(&beyond);
 }
 
+/* The farthest motion of all snaps, m. */
+static double largest_snap(const struct wb_harness_result_set *set)
+{
+    double largest = 0.0;
+    for (int i = 0; i < set->n_steps; i++) {
+        for (int k = 0; k < set->results[i].n_snaps; k++)
+            largest = fmax(largest, set->results[i].snaps[k].distance);
+    }
+    return largest;
+}
+
 static void append_sentence(struct wb_text *text, const struct wb_harnesses_results *results)
 {
     const struct wb_harness_plan *const plan = results->campaign->plan;
@@ -102,8 +113,9 @@ static void append_sentence(struct wb_text *text, const struct wb_harnesses_resu
     if (found->n_snaps == 0)
         wb_text_append(text, "; no snaps.");
     else
-        wb_text_append(text, "; %d %s.", found->n_snaps,
-                       wb_pages_plural(found->n_snaps, "snap", "snaps"));
+        wb_text_append(text, "; %d %s, by at most %.2g mm.", found->n_snaps,
+                       wb_pages_plural(found->n_snaps, "snap", "snaps"),
+                       largest_snap(&results->set) / WB_MM);
 }
 
 /* --- whether to trust it --- */

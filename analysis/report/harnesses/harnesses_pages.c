@@ -202,7 +202,7 @@ static void put_forces(struct wb_document *document, const struct wb_harnesses_r
     static const struct wb_document_column columns[] = {
         {"At"},
         {.heading = "Force (N)", .right = true, .wraps = true},
-        {.heading = "along, across, up (N)", .right = true, .wraps = true},
+        {.heading = "along, across, up (N)", .right = true},
         {.heading = "Elastic (N)", .right = true, .wraps = true},
         {.heading = "Largest (N)", .right = true, .wraps = true},
         {.heading = "Limit (N)", .right = true, .wraps = true},
@@ -258,6 +258,23 @@ static void append_snaps(struct wb_text *text, const struct wb_harness_plan *pla
     wb_text_append(text, " moves by %.*f mm.", decimals(distance), distance);
 }
 
+/* Length of wire that slid through each clip that lets it slide. */
+static void append_slid(struct wb_text *text, const struct wb_harness_plan *plan,
+                        const struct wb_harness_step_result *step)
+{
+    for (int i = 0; i < plan->n_items; i++) {
+        const double slid = step->forces[i].slid / WB_MM;
+        if (!step->forces[i].is_mounted || !isfinite(slid))
+            continue;
+        wb_text_append(text, " Since its mount %.*f mm of wire slid through ", decimals(slid),
+                       fabs(slid));
+        wb_text_append_escaped(text, plan->items[i].name);
+        wb_text_append(text, " towards the %s of ", slid > 0.0 ? "beginning" : "end");
+        wb_text_append_escaped(text, plan->branches[plan->items[i].branch].name);
+        wb_text_append(text, ".");
+    }
+}
+
 static void put_summary(struct wb_document *document, const struct wb_harness_result_set *set,
                         int index)
 {
@@ -274,6 +291,7 @@ static void put_summary(struct wb_document *document, const struct wb_harness_re
                    decimals(step->elastic / WB_MJ), fabs(step->elastic) / WB_MJ,
                    decimals(step->plastic / WB_MJ), step->plastic / WB_MJ);
     append_snaps(&text, set->plan, step);
+    append_slid(&text, set->plan, step);
     wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN, &text);
 }
 

@@ -4,7 +4,8 @@
 #include "tests/check.h"
 
 enum {
-    PLACES = 3
+    PLACES = 3,
+    ITEMS = 2
 };
 
 static struct wb_memory memory;
@@ -12,17 +13,21 @@ static struct wb_harness_frames frames;
 
 static void begin(int wanted, bool is_motion)
 {
-    wb_harness_frames_create(&frames, wanted, PLACES, &memory);
+    frames = (struct wb_harness_frames){
+        .n_wanted = wanted, .n_places = PLACES, .n_forces = ITEMS, .memory = &memory};
+    wb_harness_frames_create(&frames);
     wb_harness_frames_begin(&frames, is_motion);
 }
 
 /* Offers a shape that is known by its number; true: it was taken. */
 static bool offer(double fraction, int number)
 {
-    struct wb_harness_place *const places = wb_harness_frames_take(&frames, fraction);
-    for (int i = 0; places && i < PLACES; i++)
-        places[i].branch = number;
-    return places;
+    struct wb_harness_frame *const frame = wb_harness_frames_take(&frames, fraction);
+    for (int i = 0; frame && i < PLACES; i++)
+        frame->places[i].branch = number;
+    if (frame)
+        frame->forces[ITEMS - 1].size = number;
+    return frame;
 }
 
 static void expect(int n, const double *fractions, const int *numbers)
@@ -31,6 +36,7 @@ static void expect(int n, const double *fractions, const int *numbers)
     for (int i = 0; i < n; i++) {
         assert_close(frames.list[i].fraction, fractions[i], 1e-12);
         assert_int_equal(frames.list[i].places[PLACES - 1].branch, numbers[i]);
+        assert_true(frames.list[i].forces[ITEMS - 1].size == numbers[i]);
     }
 }
 

@@ -59,7 +59,7 @@ static void summary_states_what_the_file_has(void **unused)
         "B2           J to K1, lead, 200 mm",
         "R            root\n",
         "K1           connector on B2 at 200 mm, 8 g\n",
-        "C1           clip on B1 at 200 mm\n",
+        "C1           clip on B1 at 200 mm, holds axis\n",
         " 2  mount C1 at (190, 0, 30) mm\n",
         " 5  take_off\n",
     };

@@ -222,6 +222,11 @@ static void limits_are_watched(void **unused)
                     &yielding);
     assert_true(set.results[1].branches[0].exceeds_radius);
     assert_false(set.results[1].branches[1].exceeds_radius);
+    for (int i = 0; i < set.n_steps; i++) {
+        const struct wb_harness_branch_result *const b = &set.results[i].branches[0];
+        assert_true(b->tightest_radius <= b->least_radius);
+        assert_int_equal(b->exceeds_radius, b->tightest_radius < plan->branches[0].least_radius);
+    }
     assert_int_equal(wb_harness_found_exceeds_radius(&set, 0), 0);
     assert_int_equal(wb_harness_found_exceeds_radius(&set, 1), -1);
     wb_harness_found_collect(&found, &set);

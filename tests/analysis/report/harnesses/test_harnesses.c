@@ -245,7 +245,7 @@ static void incomplete_result_is_reported_as_far_as_it_goes(void **state)
         "The elastic computation ends in step 2 (mount C1)",
         "<b>Not completed</b>: it ends at 0.25 of the step.",
         "1 snap, the first at 0.125 of the step; in the farthest motion B1 moves by 34.0 mm.",
-        "; 1 snap.",
+        "; 1 snap, by at most 34 mm.",
         "Snaps in step 3 (move C1)",
     };
     assert_says_all("report/report.html", texts, sizeof texts / sizeof texts[0]);

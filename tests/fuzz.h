@@ -3,8 +3,8 @@
  * once found (files of the folder in FUZZ_CORPUS), then a fixed number of mutations of the seeds
  * from a fixed random sequence. `fuzz_x N [SEED]` runs N mutations, `fuzz_x seeds FOLDER` writes
  * the seeds as files, for libFuzzer to begin with. */
-#ifndef WB_TESTS_DAQ_FUZZ_H
-#define WB_TESTS_DAQ_FUZZ_H
+#ifndef WB_TESTS_FUZZ_H
+#define WB_TESTS_FUZZ_H
 
 #include <dirent.h>
 #include <stdint.h>
