@@ -27,7 +27,7 @@ static struct wb_harness_frame *add(struct wb_harness_frames *frames, double fra
         frame->places =
             wb_memory_take(frames->memory, (size_t)frames->n_places, sizeof *frame->places);
         frame->forces =
-            wb_memory_take(frames->memory, (size_t)frames->n_items, sizeof *frame->forces);
+            wb_memory_take(frames->memory, (size_t)frames->n_forces, sizeof *frame->forces);
     }
     return frame;
 }

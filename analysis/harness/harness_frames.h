@@ -18,7 +18,7 @@ struct wb_harness_force;
 /* Of one step. */
 struct wb_harness_frames {
     int n_wanted; /* N: shapes of a step, with its end; below 2: the end alone */
-    int n_places, n_items;
+    int n_places, n_forces;
     struct wb_memory *memory; /* borrowed; owns places and forces */
     bool is_motion;           /* the step is a release */
     int calls, stride;        /* of a motion: steps so far, and between two frames */
@@ -26,11 +26,11 @@ struct wb_harness_frames {
     struct wb_harness_frame {
         double fraction;                 /* of the step, of a motion's steps; above 0 and below 1 */
         struct wb_harness_place *places; /* (n_places) */
-        struct wb_harness_force *forces; /* (n_items) */
+        struct wb_harness_force *forces; /* (n_forces) */
     } * list;                            /* (n_wanted) */
 };
 
-/* With room for the frames. `frames` has `n_wanted`, `n_places`, `n_items` and `memory`. */
+/* With room for the frames. `frames` has `n_wanted`, `n_places`, `n_forces` and `memory`. */
 void wb_harness_frames_create(struct wb_harness_frames *frames);
 void wb_harness_frames_begin(struct wb_harness_frames *frames, bool is_motion);
 

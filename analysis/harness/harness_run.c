@@ -301,7 +301,7 @@ static bool observe(void *context, double fraction)
     struct wb_harness_frame *const frame = wb_harness_frames_take(&run->frames, fraction);
     if (frame) {
         memcpy(frame->forces, run->result->forces,
-               (size_t)run->plan->n_items * sizeof *frame->forces);
+               (size_t)run->frames.n_forces * sizeof *frame->forces);
         take_forces(run, frame->forces);
         take_places(run, frame->places);
     }
@@ -554,7 +554,7 @@ static void compute(struct wb_harness_result_set *set, struct wb_harness_run *ru
     add_shape(set, -1, 1.0, set->natural, natural.forces);
     *frames = (struct wb_harness_frames){.n_wanted = set->settings.frames,
                                          .n_places = set->n_places,
-                                         .n_items = plan->n_items,
+                                         .n_forces = plan->n_items,
                                          .memory = set->memory};
     wb_harness_frames_create(frames);
     set->converged = true;
