@@ -367,7 +367,7 @@ static bool observe(void *context, double fraction)
     struct wb_harness_frame *const frame = wb_harness_frames_take(&run->frames, fraction);
     if (frame) {
         memcpy(frame->forces, run->result->forces,
-               count_holders(run->plan) * sizeof *frame->forces);
+               (size_t)run->frames.n_forces * sizeof *frame->forces);
         take_forces(run, frame->forces);
         take_places(run, frame->places);
     }

@@ -5,7 +5,7 @@
 
 enum {
     PLACES = 3,
-    ITEMS = 2
+    FORCES = 2
 };
 
 static struct wb_memory memory;
@@ -14,7 +14,7 @@ static struct wb_harness_frames frames;
 static void begin(int wanted, bool is_motion)
 {
     frames = (struct wb_harness_frames){
-        .n_wanted = wanted, .n_places = PLACES, .n_forces = ITEMS, .memory = &memory};
+        .n_wanted = wanted, .n_places = PLACES, .n_forces = FORCES, .memory = &memory};
     wb_harness_frames_create(&frames);
     wb_harness_frames_begin(&frames, is_motion);
 }
@@ -26,7 +26,7 @@ static bool offer(double fraction, int number)
     for (int i = 0; frame && i < PLACES; i++)
         frame->places[i].branch = number;
     if (frame)
-        frame->forces[ITEMS - 1].size = number;
+        frame->forces[FORCES - 1].size = number;
     return frame;
 }
 
@@ -36,7 +36,7 @@ static void expect(int n, const double *fractions, const int *numbers)
     for (int i = 0; i < n; i++) {
         assert_close(frames.list[i].fraction, fractions[i], 1e-12);
         assert_int_equal(frames.list[i].places[PLACES - 1].branch, numbers[i]);
-        assert_true(frames.list[i].forces[ITEMS - 1].size == numbers[i]);
+        assert_true(frames.list[i].forces[FORCES - 1].size == numbers[i]);
     }
 }
 
