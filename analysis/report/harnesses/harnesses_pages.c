@@ -86,6 +86,13 @@ static bool is_twist_sensitive(const struct wb_harness_result_set *set, int item
     return false;
 }
 
+/* The item of a holder, for its limits; an obstacle has none. */
+static const struct wb_harness_item *limits_of(const struct wb_harness_plan *plan, int holder)
+{
+    static const struct wb_harness_item none = {.branch = -1};
+    return holder < plan->n_items ? &plan->items[holder] : &none;
+}
+
 static void put_items(struct wb_document *document, const struct wb_harnesses_results *results)
 {
     static const struct wb_document_column columns[] = {
@@ -102,20 +109,23 @@ static void put_items(struct wb_document *document, const struct wb_harnesses_re
         {.heading = "Marks", .wraps = true},
     };
     const struct wb_harness_result_set *const set = &results->set;
-    wb_document_heading(document, 1, "items", "Clips and connectors");
+    wb_document_heading(document, 1, "items",
+                        set->plan->n_obstacles > 0 ? "Clips, connectors and obstacles"
+                                                   : "Clips and connectors");
     struct wb_document_table *const table = wb_document_table(
         document,
         "Largest force and moment on the wire during all steps, and the largest force of the same "
         "steps with elastic wires. Forces that depend on GJ differ by more than 10 % with a fifth "
         "of a torsional stiffness that is not measured.",
         WB_COUNT(columns), columns);
-    for (int i = 0; i < set->plan->n_items; i++) {
-        const struct wb_harness_item *const item = &set->plan->items[i];
+    for (int i = 0; i < set->plan->n_items + set->plan->n_obstacles; i++) {
+        const struct wb_harness_item *const item = limits_of(set->plan, i);
         const double elastic = wb_harnesses_elastic_largest(results, i);
         struct wb_harness_extreme force, moment;
         wb_harness_found_largest(set, i, &force, &moment);
-        wb_pages_row(table, false, item->name);
-        wb_pages_cell_plain(table, WB_TONE_PLAIN, kinds[item->kind]);
+        wb_pages_row(table, false, wb_harness_file_holder(set->plan, i));
+        wb_pages_cell_plain(table, WB_TONE_PLAIN,
+                            i < set->plan->n_items ? kinds[item->kind] : "obstacle");
         put_rounded(table,
                     item->largest_force > 0.0 && force.value > item->largest_force ? WB_TONE_WARNING
                                                                                    : WB_TONE_PLAIN,
@@ -217,8 +227,8 @@ static void put_forces(struct wb_document *document, const struct wb_harnesses_r
         "Forces and moments on the wire at the end of the step, in the frame of the section there; "
         "the largest ones during the step; and the force with elastic wires.",
         WB_COUNT(columns), columns);
-    for (int i = 0; i < plan->n_items; i++) {
-        const struct wb_harness_item *const item = &plan->items[i];
+    for (int i = 0; i < plan->n_items + plan->n_obstacles; i++) {
+        const struct wb_harness_item *const item = limits_of(plan, i);
         const struct wb_harness_force *const f = &results->set.results[step].forces[i];
         struct wb_text parts = {0};
         if (!f->is_mounted)
@@ -227,7 +237,7 @@ static void put_forces(struct wb_document *document, const struct wb_harnesses_r
             wb_text_append(&parts, k > 0 ? ", " : "");
             wb_pages_append_number(&parts, f->force[k], decimals(f->size));
         }
-        wb_pages_row(table, false, item->name);
+        wb_pages_row(table, false, wb_harness_file_holder(plan, i));
         put_rounded(table, WB_TONE_PLAIN, f->size, 5e-4);
         wb_pages_cell(table, WB_TONE_PLAIN, "%s", wb_text_string(&parts));
         wb_text_release(&parts);
