@@ -5,10 +5,10 @@
  * the gap g, where the multiplier m becomes f each time that the forces balance. In the end the gap
  * is 0, whatever the stiffness p; p is small at first, so that an iteration from far away arrives.
  * Friction is Coulomb's with a presliding distance (Dahl 1968): it grows in proportion to the
- * motion since the touch, up to its coefficient times m; its direction lies in the plane that was
- * tangent when m was taken. For given m and plane all forces have a potential: the stiffness is
- * symmetric, and a line search finds where the wire sticks. Forces act at the wire's axis; friction
- * does not twist the wire.
+ * motion since the touch, up to its coefficient times a force that follows m; its direction lies in
+ * the plane that was tangent when m was taken. For given m, force and plane all forces have a
+ * potential: the stiffness is symmetric, and a line search finds where the wire sticks. Forces act
+ * at the wire's axis; friction does not twist the wire.
  */
 #ifndef WB_FE_HARNESS_HARNESS_CONTACT_H
 #define WB_FE_HARNESS_HARNESS_CONTACT_H
