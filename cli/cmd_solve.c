@@ -115,6 +115,8 @@ static void check(struct argp_state *state, const struct options *options)
         argp_error(state, "--gltf: '%s' does not end in .glb", s->gltf);
     if (s->sweep && !s->uncertain)
         argp_error(state, "--sweep needs --uncertain");
+    if (s->follow && s->uncertain)
+        argp_error(state, "--follow computes no bands: remove --uncertain");
     if (s->checkpoint_interval > 0.0 && !s->checkpoint)
         argp_error(state, "--checkpoint-minutes needs --checkpoint");
     if (s->kind != WB_SOLVE_CANTILEVER && !s->model)

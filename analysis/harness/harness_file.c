@@ -141,6 +141,7 @@ static enum wb_status read_wire(void *context, const struct wb_config_node *map)
         wire->largest_curvature = p->largest_curvature;
         wire->has_unloading = wb_card_source_has_unloading(source);
         wire->is_virtual = p->is_virtual;
+        (void)wb_specimens_take(&wire->specimens, p);
     }
     free(source);
     WB_TRY(status);

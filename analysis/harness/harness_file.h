@@ -34,6 +34,7 @@
 
 #include <stdbool.h>
 
+#include "analysis/predict/specimens.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -57,10 +58,11 @@ struct wb_harness_wire {
     double diameter; /* m */
     double mass;     /* kg/m */
     struct wb_law law;
-    double torsional_stiffness; /* N m2; 0: EI / (1 + nu) */
-    double largest_curvature;   /* 1/m, of the calibration; NAN: not known */
-    bool has_unloading;         /* calibrated on unloading, too */
-    bool is_virtual;            /* on a virtual rig */
+    double torsional_stiffness;    /* N m2; 0: EI / (1 + nu) */
+    double largest_curvature;      /* 1/m, of the calibration; NAN: not known */
+    bool has_unloading;            /* calibrated on unloading, too */
+    bool is_virtual;               /* on a virtual rig */
+    struct wb_specimens specimens; /* of the calibration; n 0: fewer than their scatter needs */
 };
 
 struct wb_harness_plan_branch {
