@@ -23,7 +23,8 @@
  *       - {release: C1}
  *       - take_off
  *
- * A wire is a wire file, a shipped wire, or a properties file. A branch begins with the axis of the
+ * A wire is a wire file, a shipped wire, a properties file, or a bundle file, which stands for its
+ * calibrated beam (`published`, `beam`). A branch begins with the axis of the
  * branch before it, or of the root, turned by `angle_deg` towards `around_deg`: the direction
  * around that axis, from `up` on. Its natural shape is straight, or has the curvatures about its y
  * and z axes, constant or between places. The frame of a wire's section: x along the wire, z up, y

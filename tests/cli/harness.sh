@@ -109,6 +109,20 @@ sed "s|wire: type3|wire: $root/docs/cards/type1.yaml|" "$root/fixtures/harnesses
 grep -q 'only: trunk (bundle-7.yaml);' warned || fail "a calibrated wire is warned of: $(cat warned)"
 grep -q 'B[23].* bent beyond the calibration' said || fail "the range is not named: $(cat said)"
 
+# So is what `calibrate` writes for a computed bundle, with its law, mass and diameter.
+"$wirebench" calibrate "$root/simulations/7-type3" -o taped.yaml --no-figure >said 2>&1 || fail "calibrate: $(cat said)"
+sed 's|wire: bundle-7|wire: ./taped.yaml|' "$root/fixtures/harnesses/small.yaml" >taped-harness.yaml
+"$wirebench" solve harness taped-harness.yaml --law elastic --json >out.json 2>warned || fail "a bundle: $(cat warned)"
+python3 - out.json taped.yaml <<'PYTHON' || fail 'the wire is not the calibrated bundle'
+import json, math, re, sys
+wire = json.load(open(sys.argv[1]))["wires"][0]
+value = lambda key: float(re.search(r"^%s: (\S+)" % key, open(sys.argv[2]).read(), re.M).group(1))
+assert wire["file"] == "taped.yaml" and wire["mass_per_length_kg_m"] == value("mass_per_length_kg_m")
+assert wire["outer_diameter_mm"] == value("outer_diameter_mm")
+rigidity = value("youngs_modulus_MPa") * math.pi * value("outer_diameter_mm") ** 4 / 64
+assert math.isclose(wire["flexural_rigidity_N_mm2"], rigidity, rel_tol=1e-9)
+PYTHON
+
 # Bands from the specimens of a wire, beside one without: the same bytes again, and none left behind.
 cat >bands.yaml <<YAML
 kind: harness
