@@ -17,6 +17,7 @@
 #include "cli/file_kind.h"
 #include "cli/finding.h"
 #include "cli/solve_harness_follow.h"
+#include "cli/solve_harness_parts.h"
 
 #define WB_LOG_DOMAIN "solve"
 
@@ -162,6 +163,8 @@ static enum wb_status compute(const struct wb_command_common *common,
     WB_TRY(wb_harness_file_read(plan, path));
     if (settings->uncertain)
         WB_TRY(wb_harness_bands_check(plan, settings->runs));
+    if (settings->part)
+        WB_TRY(wb_solve_harness_parts_check(settings));
     if (common->output)
         WB_TRY(wb_file_prepare_output(common->output, common->force));
     if (settings->vtk)
@@ -180,10 +183,28 @@ static enum wb_status compute(const struct wb_command_common *common,
     return status;
 }
 
-/* Bands of all runs; *bands stays NULL where they are interrupted, and after results in part. */
+/* Computes all runs, or the part of a job. */
+static enum wb_status compute_runs(struct wb_harness_bands *bands,
+                                   const struct wb_solve_settings *settings,
+                                   const struct wb_jobs_options *jobs, bool *complete)
+{
+    *complete = true;
+    if (wb_jobs_wanted(jobs))
+        return wb_solve_harness_parts_run(bands, settings, jobs, complete);
+    const enum wb_status status = settings->part
+                                      ? wb_solve_harness_parts_compute(bands, settings)
+                                      : wb_harness_bands_compute(bands, 0, settings->runs);
+    *complete = !bands->stopped;
+    if (status == WB_OK && bands->stopped)
+        wb_warn("stopped: no bands, because not all runs were computed");
+    return status;
+}
+
+/* Bands of all runs; *bands stays NULL where they are incomplete, and after results in part. */
 static enum wb_status compute_bands(const struct wb_solve_settings *settings,
+                                    const struct wb_jobs_options *jobs,
                                     const struct wb_harness_result_set *set,
-                                    struct wb_harness_bands **bands)
+                                    struct wb_harness_bands **bands, bool *complete)
 {
     const struct wb_harness_bands_settings s = {
         .runs = settings->runs,
@@ -191,23 +212,22 @@ static enum wb_status compute_bands(const struct wb_solve_settings *settings,
         .stop = wb_interrupt_stops,
     };
     struct wb_harness_bands *all;
+    *complete = set->converged;
     if (!set->converged)
         return WB_OK;
     WB_TRY(wb_harness_bands_create(&all, set, &s));
-    const enum wb_status status = wb_harness_bands_compute(all, 0, settings->runs);
-    if (status == WB_OK && !all->stopped) {
+    const enum wb_status status = compute_runs(all, settings, jobs, complete);
+    if (status == WB_OK && *complete && !settings->part) {
         wb_harness_bands_finish(all);
         *bands = all;
-        return WB_OK;
+    } else {
+        wb_harness_bands_destroy(all);
     }
-    if (status == WB_OK)
-        wb_warn("stopped: no bands, because not all %d runs were computed", settings->runs);
-    wb_harness_bands_destroy(all);
     return status;
 }
 
 int wb_solve_harness(const struct wb_command_common *common,
-                     const struct wb_solve_settings *settings)
+                     const struct wb_solve_settings *settings, const struct wb_jobs_options *jobs)
 {
     struct wb_harness_plan *const plan = wb_memory_new(1, sizeof *plan);
     struct wb_harness_result_set set = {.plan = NULL};
@@ -220,10 +240,11 @@ int wb_solve_harness(const struct wb_command_common *common,
     if (status == WB_OK && settings->follow) {
         complete = !wb_interrupted();
     } else if (status == WB_OK) {
+        complete = set.converged;
         if (settings->uncertain)
-            status = compute_bands(settings, &set, &bands);
-        complete = set.converged && (!settings->uncertain || bands);
-        if (status == WB_OK)
+            status = compute_bands(settings, jobs, &set, &bands, &complete);
+        /* Of jobs that are left the next call delivers all. */
+        if (status == WB_OK && !settings->part && (complete || !wb_jobs_wanted(jobs)))
             status = deliver(common, settings, figure, &set, bands);
     }
     wb_harness_bands_destroy(bands);

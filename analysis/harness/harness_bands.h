@@ -25,6 +25,7 @@
 #include "analysis/dataset/fit.h"
 #include "analysis/harness/harness_run.h"
 #include "base/memory.h"
+#include "base/reason.h"
 #include "base/status.h"
 
 enum {
@@ -98,6 +99,15 @@ void wb_harness_bands_destroy(struct wb_harness_bands *bands); /* accepts NULL *
 
 /* Whether a wire is drawn. */
 bool wb_harness_bands_is_drawn(const struct wb_harness_wire *wire);
+
+/* Writes the results of the n runs from `first` on as part.json into a folder, which exists; and
+ * reads them. WB_ERR_FORMAT for those of other inputs, other runs, or another revision of the
+ * program; `why` receives the reason; NULL: it is logged. */
+WB_MUST_CHECK enum wb_status wb_harness_bands_write_part(const struct wb_harness_bands *bands,
+                                                         int first, int n, const char *folder);
+WB_MUST_CHECK enum wb_status wb_harness_bands_read_part(struct wb_harness_bands *bands, int first,
+                                                        int n, const char *folder,
+                                                        struct wb_reason *why);
 
 /* Computes n runs from `first` on. */
 WB_MUST_CHECK enum wb_status wb_harness_bands_compute(struct wb_harness_bands *bands, int first,

@@ -130,6 +130,10 @@ static const struct wb_setting rows[] = {
      WB_ROW_OPTION("follow", NULL,
                    "Take steps as lines of JSON from standard input, and answer each with a line"),
      .applies = WB_SOLVE_HARNESS},
+    {WB_ROW_TEXT(wb_solve_settings, part, "part"),
+     WB_ROW_OPTION("part", "K/N",
+                   "With --uncertain, compute the runs of part K of N only, as a task of --slurm"),
+     .applies = WB_SOLVE_HARNESS},
 };
 
 const struct wb_setting_table wb_solve_settings_table = {WB_SETTING_ROWS(rows)};

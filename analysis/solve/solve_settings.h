@@ -69,8 +69,9 @@ struct wb_solve_settings {
     bool uncertain;    /* bands, by analysis/predict/bands.h or analysis/harness/harness_bands.h */
     int runs, seed;    /* of the bands */
     const char *sweep; /* cases in place of the file's scenarios; NULL: none */
-    /* Setting of harnesses. */
-    bool follow; /* steps from standard input */
+    /* Settings of harnesses. */
+    bool follow;      /* steps from standard input */
+    const char *part; /* of the runs of the bands, "2/20"; NULL: all */
 };
 
 extern const struct wb_setting_table wb_solve_settings_table;

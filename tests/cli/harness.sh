@@ -171,6 +171,27 @@ assert row["quantity"] == "distance_mm" and row["low"] == ""
 assert math.isclose(float(row["high"]), far["distance_mm"], rel_tol=1e-12)
 assert rows[-1]["quantity"] == "residual_distance_mm"
 PYTHON
+# The same in parts, here or as tasks of Slurm, of which complete ones are kept; parts of another seed are not.
+"$wirebench" solve harness bands.yaml --uncertain --runs 40 --solve --workers 2 -o parts >said 2>warned ||
+    fail "--solve: $(cat warned)"
+cmp -s bands/harness.json parts/harness.json && cmp -s bands/bands.csv parts/bands.csv || fail 'parts give other bytes'
+[ "$(ls parts.jobs | grep -c 'part-[12]-of-2$')" -eq 2 ] || fail "parts: $(ls parts.jobs)"
+stat -c %y%i parts.jobs/part-*/part.json >before
+"$wirebench" solve harness bands.yaml --uncertain --runs 40 --solve -o parts --force >said 2>&1 || fail 'again'
+stat -c %y%i parts.jobs/part-*/part.json | cmp -s - before || fail 'complete parts are computed again'
+ends_with 3 'run the same command again' solve harness bands.yaml --uncertain --runs 40 --slurm-dry-run -o tasks
+for task in 1 2; do
+    (cd tasks.jobs/slurm-1 && SLURM_ARRAY_TASK_ID=$task sh array.sh "$folder") || fail "task $task of Slurm"
+done
+"$wirebench" solve harness bands.yaml --uncertain --runs 40 --slurm -o tasks >said 2>warned || fail "--slurm: $(cat warned)"
+cmp -s bands/harness.json tasks/harness.json || fail 'the tasks of Slurm give other bytes'
+"$wirebench" solve harness bands.yaml --uncertain --runs 40 --seed 2 --solve -o parts --force >said 2>&1 || fail '--seed 2'
+cmp -s bands/bands.csv parts/bands.csv && fail 'parts of another seed are taken'
+ends_with 2 "--part: expected K/N" solve harness bands.yaml --uncertain --part 3/2 -o none
+ends_with 2 'need --uncertain and -o' solve harness bands.yaml --uncertain --solve
+ends_with 2 'remove --part' solve harness bands.yaml --uncertain --solve --part 1/2 -o none
+[ ! -e none ] || fail 'a wrong part leaves a folder'
+
 "$wirebench" solve harness bands.yaml -o bands --force >said 2>/dev/null || fail 'without --uncertain'
 [ ! -e bands/bands.csv ] || fail 'bands of an earlier run are left'
 ends_with 2 'no wire has it: trunk (bundle-7.yaml), lead (type3.yaml)' solve harness small --uncertain -o none

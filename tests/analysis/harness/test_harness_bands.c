@@ -231,6 +231,34 @@ static void number_of_threads_does_not_change_a_bit(void **unused)
 }
 
 /* Two names of one file are one product, and wires without specimens are exact. */
+static void parts_of_other_inputs_are_rejected(void **unused)
+{
+    (void)unused;
+    const struct wb_harness_bands_settings s = {.runs = 40, .seed = 3}, other = {.runs = 40};
+    struct wb_harness_bands *bands, *others;
+    write_properties("p.yaml", 1, SPECIMENS);
+    compute_nominal(one_wire, "  - hang\n");
+    assert_int_equal(wb_harness_bands_create(&bands, &nominal, &s), WB_OK);
+    assert_int_equal(wb_harness_bands_create(&others, &nominal, &other), WB_OK);
+    assert_int_equal(wb_harness_bands_compute(bands, 10, 5), WB_OK);
+    assert_int_equal(wb_harness_bands_write_part(bands, 10, 5, folder), WB_OK);
+    keep_messages();
+    assert_int_equal(wb_harness_bands_read_part(others, 10, 5, folder, NULL), WB_ERR_FORMAT);
+    assert_message("part.json: not 5 runs from run 11 of this harness");
+    assert_int_equal(wb_harness_bands_read_part(bands, 11, 5, folder, NULL), WB_ERR_FORMAT);
+    assert_int_equal(wb_harness_bands_read_part(bands, 10, 6, folder, NULL), WB_ERR_FORMAT);
+    release_messages();
+    double *const values = bands->values + 10 * bands->stride;
+    const double first = values[0];
+    assert_true(first == 1.0);
+    values[0] = 0.0;
+    assert_int_equal(wb_harness_bands_read_part(bands, 10, 5, folder, NULL), WB_OK);
+    assert_true(values[0] == first);
+    wb_harness_bands_destroy(bands);
+    wb_harness_bands_destroy(others);
+    release_nominal();
+}
+
 static void wires_of_one_file_share_their_draw(void **unused)
 {
     (void)unused;
@@ -331,6 +359,7 @@ int main(void)
         cmocka_unit_test(a_hanging_cantilever_sinks_as_its_compliance),
         cmocka_unit_test(ninety_five_percent_of_further_wires_are_within_the_band),
         cmocka_unit_test(number_of_threads_does_not_change_a_bit),
+        cmocka_unit_test(parts_of_other_inputs_are_rejected),
         cmocka_unit_test(wires_of_one_file_share_their_draw),
         cmocka_unit_test(runs_without_equilibrium_are_counted_and_named),
         cmocka_unit_test(runs_with_other_snaps_are_counted_and_named),
