@@ -235,7 +235,7 @@ static void append_interval(struct wb_text *text, const char *before,
 {
     const double least = 1e-8;
     if (isfinite(band->median))
-        wb_text_append(text, "%s%.3g %s (%.3g to %.3g)", before,
+        wb_text_append(text, "%s%.4g %s (%.4g to %.4g)", before,
                        band->median < least ? 0.0 : band->median / factor, unit,
                        band->low < least ? 0.0 : band->low / factor,
                        band->high < least ? 0.0 : band->high / factor);
