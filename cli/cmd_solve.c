@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "analysis/dataset/dataset.h"
+#include "analysis/jobs/jobs.h"
 #include "analysis/quicklook.h"
 #include "analysis/solve/solve.h"
 #include "base/interrupt.h"
@@ -15,6 +16,7 @@
 #include "cli/complete.h"
 #include "cli/file_kind.h"
 #include "cli/finding.h"
+#include "cli/job_options.h"
 #include "cli/print.h"
 #include "cli/settings.h"
 #include "cli/solve_harness.h"
@@ -24,6 +26,7 @@
 struct options {
     struct wb_command_common common;
     struct wb_solve_settings settings; /* kind 0: no model was named */
+    struct wb_jobs_options jobs;       /* of the bands of a harness */
     bool has_shown;                    /* this process has printed the result: with mpirun, one */
 };
 
@@ -115,6 +118,12 @@ static void check(struct argp_state *state, const struct options *options)
         argp_error(state, "--gltf: '%s' does not end in .glb", s->gltf);
     if (s->sweep && !s->uncertain)
         argp_error(state, "--sweep needs --uncertain");
+    if ((wb_jobs_wanted(&options->jobs) || s->part) && !(s->uncertain && options->common.output))
+        argp_error(state, "--solve, --slurm and --part need --uncertain and -o");
+    if (wb_jobs_wanted(&options->jobs) && s->part)
+        argp_error(state, "--solve and --slurm compute all parts: remove --part");
+    if (s->follow && s->uncertain)
+        argp_error(state, "--follow computes no bands: remove --uncertain");
     if (s->checkpoint_interval > 0.0 && !s->checkpoint)
         argp_error(state, "--checkpoint-minutes needs --checkpoint");
     if (s->kind != WB_SOLVE_CANTILEVER && !s->model)
@@ -129,6 +138,8 @@ static void check(struct argp_state *state, const struct options *options)
 static error_t parse(int key, char *argument, struct argp_state *state)
 {
     struct options *const o = state->input;
+    if (key == ARGP_KEY_INIT && state->child_inputs)
+        state->child_inputs[0] = &o->jobs;
     if (key == ARGP_KEY_ARG) {
         take_argument(state, argument, &o->settings);
         return 0;
@@ -170,7 +181,8 @@ static void parse_options(int argc, char **argv, struct options *options)
 {
     char name[32];
     struct wb_text arguments = {0}, text = {0};
-    struct argp argp = {.options = other_options, .parser = parse};
+    static const struct argp_child jobs[] = {{&wb_job_options_argp, 0, NULL, 0}, {0}};
+    struct argp argp = {.options = other_options, .parser = parse, .children = jobs};
     struct wb_settings_command command = {
         .argp = &argp,
         .sources = sources,
@@ -183,6 +195,8 @@ static void parse_options(int argc, char **argv, struct options *options)
     argp.args_doc = wb_text_string(&arguments);
     argp.doc = wb_text_string(&text);
     command.place = kind >= 0 ? 1U << kind : 0;
+    if (command.place != WB_SOLVE_HARNESS)
+        argp.children = NULL;
     if (kind >= 0) {
         /* Messages and --help name "wirebench solve bundle". */
         snprintf(name, sizeof name, "solve %s", wb_solve_settings_kinds[kind]);
@@ -374,6 +388,13 @@ static enum wb_status check_model(const struct wb_solve_settings *s)
                                           : WB_FILE_BIT(WB_FILE_MODEL));
 }
 
+static int solve_harness(struct options *options)
+{
+    const int code = wb_solve_harness(&options->common, &options->settings, &options->jobs);
+    wb_jobs_options_release(&options->jobs);
+    return code;
+}
+
 int wb_cmd_solve(int argc, char **argv)
 {
     struct options options = {0};
@@ -383,7 +404,7 @@ int wb_cmd_solve(int argc, char **argv)
     parse_options(argc, argv, &options);
     wb_interrupt_install();
     if (options.settings.kind == WB_SOLVE_HARNESS)
-        return wb_solve_harness(&options.common, &options.settings);
+        return solve_harness(&options);
     if (check_model(&options.settings) != WB_OK)
         return WB_EXIT_FAILED;
     /* In the way of a dataset, the message of wb_solve_run() is the better one. */

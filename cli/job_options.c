@@ -14,7 +14,7 @@ enum {
 };
 
 static const struct argp_option option_table[] = {
-    {NULL, 0, NULL, 0, "Missing and outdated datasets:", 2},
+    {NULL, 0, NULL, 0, "Datasets that are missing or outdated, and runs of --uncertain:", 2},
     {"solve", KEY_SOLVE, NULL, 0, "Compute them here, on all cores", 2},
     {"workers", KEY_WORKERS, "N", 0, "Runs at once (as many as cores; with --slurm, no limit)", 2},
     {"cores-per-run", KEY_CORES, "N", 0, "Threads that one run may use (1)", 2},

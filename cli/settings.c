@@ -239,7 +239,10 @@ const char *wb_settings_first_argument(const struct wb_settings_command *command
     struct line line;
     begin(&line, command, NULL);
     const struct argp rows = {.options = line.options, .parser = skip};
-    const struct argp_child children[] = {{.argp = &rows}, {0}};
+    /* Options of the command's child, if it has one. */
+    const struct argp_child *const child = command->argp->children;
+    const struct argp others = {.options = child ? child->argp->options : NULL, .parser = skip};
+    const struct argp_child children[] = {{.argp = &rows}, {.argp = child ? &others : NULL}, {0}};
     const struct argp argp = {
         .options = wb_command_help_options, .parser = keep_first, .children = children};
     /* Mistakes are reported when the options of the kind are parsed. */

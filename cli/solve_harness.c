@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "analysis/harness/harness_bands.h"
+#include "analysis/harness/harness_bands_output.h"
 #include "analysis/harness/harness_drawing.h"
 #include "analysis/harness/harness_found.h"
 #include "analysis/harness/harness_gltf.h"
@@ -15,6 +17,7 @@
 #include "cli/file_kind.h"
 #include "cli/finding.h"
 #include "cli/solve_harness_follow.h"
+#include "cli/solve_harness_parts.h"
 
 #define WB_LOG_DOMAIN "solve"
 
@@ -78,6 +81,15 @@ static void append_virtual(struct wb_text *text, const struct wb_harness_plan *p
     }
 }
 
+static void warn_of_deviants(const struct wb_harness_bands *bands)
+{
+    struct wb_text text = {0};
+    wb_harness_bands_output_append_deviants(&text, bands);
+    if (text.length > 0)
+        wb_warn("%s", wb_text_string(&text));
+    wb_text_release(&text);
+}
+
 static void append_trust(struct wb_text *text, const struct wb_harness_result_set *set)
 {
     const struct wb_harness_plan *const plan = set->plan;
@@ -104,12 +116,13 @@ static void append_trust(struct wb_text *text, const struct wb_harness_result_se
 
 static enum wb_status deliver(const struct wb_command_common *common,
                               const struct wb_solve_settings *settings, const char *figure,
-                              const struct wb_harness_result_set *set)
+                              const struct wb_harness_result_set *set,
+                              const struct wb_harness_bands *bands)
 {
     struct wb_text table = {0};
     struct wb_finding finding = {.figure = figure[0] ? figure : NULL};
     if (common->output)
-        WB_TRY(wb_harness_output_write(set, common->output));
+        WB_TRY(wb_harness_output_write(set, bands, common->output));
     if (finding.figure)
         WB_TRY(wb_harness_drawing_write(set, figure));
     if (settings->vtk)
@@ -117,13 +130,17 @@ static enum wb_status deliver(const struct wb_command_common *common,
     if (settings->gltf)
         WB_TRY(wb_harness_gltf_write(set, settings->gltf));
     warn_not_converged(set);
+    if (bands)
+        warn_of_deviants(bands);
     if (common->json) {
         struct wb_json *const root = wb_json_create();
-        wb_harness_output_put(root, set);
+        wb_harness_output_put(root, set, bands);
         wb_command_print_json(root);
         return WB_OK;
     }
     wb_harness_output_append_table(&table, set);
+    if (bands)
+        wb_harness_bands_output_append_table(&table, bands);
     fputs(wb_text_string(&table), stdout);
     wb_text_release(&table);
     wb_harness_output_append_finding(&finding.found, set);
@@ -158,7 +175,12 @@ static enum wb_status compute(const struct wb_command_common *common,
     char path[WB_PATH];
     WB_TRY(wb_file_find_fixture(path, "harnesses", settings->model, NULL));
     WB_TRY(wb_file_kind_check(path, WB_FILE_BIT(WB_FILE_HARNESS)));
+    WB_TRY(wb_solve_settings_check(settings));
     WB_TRY(wb_harness_file_read(plan, path));
+    if (settings->uncertain)
+        WB_TRY(wb_harness_bands_check(plan, settings->runs));
+    if (settings->part)
+        WB_TRY(wb_solve_harness_parts_check(settings));
     if (common->output)
         WB_TRY(wb_file_prepare_output(common->output, common->force));
     if (settings->vtk)
@@ -177,11 +199,55 @@ static enum wb_status compute(const struct wb_command_common *common,
     return status;
 }
 
+/* Computes all runs, or the part of a job. */
+static enum wb_status compute_runs(struct wb_harness_bands *bands,
+                                   const struct wb_solve_settings *settings,
+                                   const struct wb_jobs_options *jobs, bool *complete)
+{
+    *complete = true;
+    if (wb_jobs_wanted(jobs))
+        return wb_solve_harness_parts_run(bands, settings, jobs, complete);
+    const enum wb_status status = settings->part
+                                      ? wb_solve_harness_parts_compute(bands, settings)
+                                      : wb_harness_bands_compute(bands, 0, settings->runs);
+    *complete = !bands->stopped;
+    if (status == WB_OK && bands->stopped)
+        wb_warn("stopped: no bands, because not all runs were computed");
+    return status;
+}
+
+/* Bands of all runs; *bands stays NULL where they are incomplete, and after results in part. */
+static enum wb_status compute_bands(const struct wb_solve_settings *settings,
+                                    const struct wb_jobs_options *jobs,
+                                    const struct wb_harness_result_set *set,
+                                    struct wb_harness_bands **bands, bool *complete)
+{
+    const struct wb_harness_bands_settings s = {
+        .runs = settings->runs,
+        .seed = (uint64_t)settings->seed,
+        .stop = wb_interrupt_stops,
+    };
+    struct wb_harness_bands *all;
+    *complete = set->converged;
+    if (!set->converged)
+        return WB_OK;
+    WB_TRY(wb_harness_bands_create(&all, set, &s));
+    const enum wb_status status = compute_runs(all, settings, jobs, complete);
+    if (status == WB_OK && *complete && !settings->part) {
+        wb_harness_bands_finish(all);
+        *bands = all;
+    } else {
+        wb_harness_bands_destroy(all);
+    }
+    return status;
+}
+
 int wb_solve_harness(const struct wb_command_common *common,
-                     const struct wb_solve_settings *settings)
+                     const struct wb_solve_settings *settings, const struct wb_jobs_options *jobs)
 {
     struct wb_harness_plan *const plan = wb_memory_new(1, sizeof *plan);
     struct wb_harness_result_set set = {.plan = NULL};
+    struct wb_harness_bands *bands = NULL;
     char figure[WB_PATH] = "";
     if (common->output && !common->no_figure)
         wb_finding_folder_figure_path(figure, common->output);
@@ -191,9 +257,16 @@ int wb_solve_harness(const struct wb_command_common *common,
         complete = !wb_interrupted();
     } else if (status == WB_OK) {
         complete = set.converged;
-        status = deliver(common, settings, figure, &set);
+        if (settings->uncertain)
+            status = compute_bands(settings, jobs, &set, &bands, &complete);
+        /* Of jobs that are left the next call delivers all. */
+        if (status == WB_OK && !settings->part && (complete || !wb_jobs_wanted(jobs)))
+            status = deliver(common, settings, figure, &set, bands);
     }
+    wb_harness_bands_destroy(bands);
     wb_harness_run_release(&set);
     free(plan);
+    if (status == WB_ERR_ARGUMENT)
+        return WB_EXIT_USAGE;
     return status == WB_OK && !complete ? WB_EXIT_INCOMPLETE : wb_command_exit(status);
 }

@@ -6,6 +6,7 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_multifit.h>
+#include <gsl/gsl_statistics_double.h>
 
 #include "base/memory.h"
 
@@ -63,6 +64,16 @@ double wb_fit_median(double *values, size_t n)
         return (double)NAN;
     wb_fit_sort(values, n);
     return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+}
+
+struct wb_fit_band wb_fit_band(double *values, size_t n, double tail)
+{
+    wb_fit_sort(values, n);
+    return (struct wb_fit_band){
+        .median = gsl_stats_quantile_from_sorted_data(values, 1, n, 0.5),
+        .low = gsl_stats_quantile_from_sorted_data(values, 1, n, tail),
+        .high = gsl_stats_quantile_from_sorted_data(values, 1, n, 1.0 - tail),
+    };
 }
 
 double wb_fit_usual_size(double *sizes, size_t n)

@@ -26,6 +26,12 @@ void wb_fit_sort(double *values, size_t n);
 /* Sorts the values; NaN when n is 0. */
 double wb_fit_median(double *values, size_t n);
 
+/* Median and the quantiles `tail` and 1 - `tail` of n (at least 1) values, which are sorted. */
+struct wb_fit_band {
+    double median, low, high;
+};
+struct wb_fit_band wb_fit_band(double *values, size_t n, double tail);
+
 /* Robust standard deviation from absolute deviations, by their median (scaled for a normal
  * distribution), so that outliers have little effect. Sorts the deviations; NaN when n is 0. */
 double wb_fit_usual_size(double *sizes, size_t n);

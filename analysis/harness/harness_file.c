@@ -112,6 +112,44 @@ static int find_wire(const struct wb_harness_plan *plan, const char *name)
     return -1;
 }
 
+/* The wire of this name, or else the bundle. */
+static enum wb_status find_wire_file(struct reader *reader, const struct wb_config_node *map,
+                                     const char *name, char path[WB_PATH])
+{
+    struct wb_reason why = {.text = ""};
+    if (wb_file_find_named(path, "wires", name, reader->file.folder, NULL, &why) == WB_OK ||
+        wb_file_find_named(path, "bundles", name, reader->file.folder, NULL, &why) == WB_OK)
+        return WB_OK;
+    return wb_model_file_find(&reader->file, map, "wire", "wires", name, path);
+}
+
+/* Replaces the path of a bundle file by that of its calibrated beam. */
+static enum wb_status follow_bundle(const struct wb_config_node *map, char path[WB_PATH])
+{
+    char bundle[WB_PATH];
+    struct wb_model_file file;
+    snprintf(bundle, sizeof bundle, "%s", path);
+    enum wb_status status = wb_model_file_open(&file, bundle);
+    const bool is_bundle = status == WB_OK && wb_config_find(file.root, "wires") &&
+                           !wb_config_find(file.root, "branches");
+    if (is_bundle) {
+        const struct wb_config_node *const published = wb_config_find(file.root, "published");
+        const struct wb_config_node *const beam =
+            published ? wb_config_find(published, "beam") : NULL;
+        const char *const name = beam ? wb_config_scalar(beam) : NULL;
+        status = name
+                     ? wb_model_file_find(&file, published, "beam", "wires", name, path)
+                     : wb_config_refuse(map, "wire",
+                                        "%s is a bundle file without a calibrated beam (published: "
+                                        "beam): name the properties file of 'wirebench calibrate' "
+                                        "on tests of the bundle, or on a dataset of 'wirebench "
+                                        "solve bundle'",
+                                        bundle);
+    }
+    wb_model_file_close(&file);
+    return status;
+}
+
 static enum wb_status read_wire(void *context, const struct wb_config_node *map)
 {
     struct reader *const reader = context;
@@ -128,7 +166,8 @@ static enum wb_status read_wire(void *context, const struct wb_config_node *map)
     WB_TRY(check_name(map, wire->name));
     if (find_wire(plan, wire->name) >= 0)
         return wb_config_refuse(map, "name", "%s is the name of another wire, too", wire->name);
-    WB_TRY(wb_model_file_find(&reader->file, map, "wire", "wires", from, path));
+    WB_TRY(find_wire_file(reader, map, from, path));
+    WB_TRY(follow_bundle(map, path));
 
     struct wb_card_source *const source = wb_memory_new(1, sizeof *source);
     const enum wb_status status = wb_card_source_read(source, path);
@@ -142,6 +181,7 @@ static enum wb_status read_wire(void *context, const struct wb_config_node *map)
         wire->largest_curvature = p->largest_curvature;
         wire->has_unloading = wb_card_source_has_unloading(source);
         wire->is_virtual = p->is_virtual;
+        (void)wb_specimens_take(&wire->specimens, p);
     }
     free(source);
     WB_TRY(status);

@@ -25,7 +25,8 @@
  *       - {release: C1}
  *       - take_off
  *
- * A wire is a wire file, a shipped wire, or a properties file. A branch begins with the axis of the
+ * A wire is a wire file, a shipped wire, a properties file, or a bundle file, which stands for its
+ * calibrated beam (`published`, `beam`). A branch begins with the axis of the
  * branch before it, or of the root, turned by `angle_deg` towards `around_deg`: the direction
  * around that axis, from `up` on. Its natural shape is straight, or has the curvatures about its y
  * and z axes, constant or between places. The frame of a wire's section: x along the wire, z up, y
@@ -37,6 +38,7 @@
 
 #include <stdbool.h>
 
+#include "analysis/predict/specimens.h"
 #include "base/config.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -61,10 +63,11 @@ struct wb_harness_wire {
     double diameter; /* m */
     double mass;     /* kg/m */
     struct wb_law law;
-    double torsional_stiffness; /* N m2; 0: EI / (1 + nu) */
-    double largest_curvature;   /* 1/m, of the calibration; NAN: not known */
-    bool has_unloading;         /* calibrated on unloading, too */
-    bool is_virtual;            /* on a virtual rig */
+    double torsional_stiffness;    /* N m2; 0: EI / (1 + nu) */
+    double largest_curvature;      /* 1/m, of the calibration; NAN: not known */
+    bool has_unloading;            /* calibrated on unloading, too */
+    bool is_virtual;               /* on a virtual rig */
+    struct wb_specimens specimens; /* of the calibration; n 0: fewer than their scatter needs */
 };
 
 struct wb_harness_plan_branch {

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/dataset/csv_table.h"
+#include "analysis/harness/harness_bands_output.h"
 #include "analysis/harness/harness_found.h"
 #include "analysis/keys/common.h"
 #include "analysis/keys/row.h"
@@ -122,6 +123,8 @@ static const struct wb_key wb_harness_output_result_rows[] = {
     {"wires", WB_POINTER(struct wb_harness_plan, wires, n_wires), "wires", &wire_keys},
     {"steps", OBJECT | LIST, "steps", &wb_harness_output_step_keys},
     {"residual_shape", OBJECT | OPTIONAL, "shape after the harness was taken off", &residual_keys},
+    {"uncertainty", OBJECT | OPTIONAL, "bands of forces and shapes, with `--uncertain`",
+     &wb_harness_bands_output_keys},
 };
 WB_KEYS(wb_harness_output_result, "harness_result", "A harness that was computed.");
 
@@ -200,7 +203,8 @@ void wb_harness_output_put_step(struct wb_json *object, const struct wb_harness_
     }
 }
 
-void wb_harness_output_put_result(struct wb_json *object, const struct wb_harness_result_set *set)
+void wb_harness_output_put_result(struct wb_json *object, const struct wb_harness_result_set *set,
+                                  const struct wb_harness_bands *bands)
 {
     const struct wb_harness_plan *const plan = set->plan;
     struct wb_harness_found found;
@@ -220,13 +224,16 @@ void wb_harness_output_put_result(struct wb_json *object, const struct wb_harnes
         wb_json_set_number(residual, "distance_mm", found.residual.value / WB_MM);
         wb_json_set_text(residual, "branch", branch_name(plan, found.residual.of));
     }
+    if (bands)
+        wb_harness_bands_output_put(wb_json_set_object(object, "uncertainty"), bands);
 }
 
-void wb_harness_output_put(struct wb_json *object, const struct wb_harness_result_set *set)
+void wb_harness_output_put(struct wb_json *object, const struct wb_harness_result_set *set,
+                           const struct wb_harness_bands *bands)
 {
     wb_keys_put_tool(object, "wirebench solve");
     wb_json_set_text(object, "kind", "harness");
-    wb_harness_output_put_result(object, set);
+    wb_harness_output_put_result(object, set, bands);
 }
 
 /* --- tables --- */
@@ -339,14 +346,16 @@ static enum wb_status write_forces(const struct wb_harness_result_set *set, cons
     return status;
 }
 
-enum wb_status wb_harness_output_write(const struct wb_harness_result_set *set, const char *folder)
+enum wb_status wb_harness_output_write(const struct wb_harness_result_set *set,
+                                       const struct wb_harness_bands *bands, const char *folder)
 {
     char path[WB_PATH];
     WB_TRY(write_shapes(set, folder));
     WB_TRY(write_forces(set, folder));
+    WB_TRY(wb_harness_bands_output_write(bands, folder));
     WB_TRY(wb_file_join(path, folder, "harness.json"));
     struct wb_json *const root = wb_json_create();
-    wb_harness_output_put(root, set);
+    wb_harness_output_put(root, set, bands);
     char *const text = wb_json_format(root);
     wb_json_destroy(root);
     const enum wb_status status = wb_file_write(path, text, strlen(text));

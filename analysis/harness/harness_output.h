@@ -5,6 +5,7 @@
 
 #include <stddef.h>
 
+#include "analysis/harness/harness_bands.h"
 #include "analysis/harness/harness_run.h"
 #include "analysis/keys/keys.h"
 #include "base/json.h"
@@ -31,9 +32,12 @@ extern const struct wb_harness_output_column {
 double wb_harness_output_value(const struct wb_harness_place *place,
                                const struct wb_harness_output_column *column);
 
-/* Members of harness.json into an object; the same without program and kind of file. */
-void wb_harness_output_put(struct wb_json *object, const struct wb_harness_result_set *set);
-void wb_harness_output_put_result(struct wb_json *object, const struct wb_harness_result_set *set);
+/* Members of harness.json into an object; the same without program and kind of file. `bands` may be
+ * NULL, here and below. */
+void wb_harness_output_put(struct wb_json *object, const struct wb_harness_result_set *set,
+                           const struct wb_harness_bands *bands);
+void wb_harness_output_put_result(struct wb_json *object, const struct wb_harness_result_set *set,
+                                  const struct wb_harness_bands *bands);
 
 /* The same of one step: a member of its `steps`. */
 void wb_harness_output_put_step(struct wb_json *object, const struct wb_harness_plan *plan,
@@ -41,6 +45,7 @@ void wb_harness_output_put_step(struct wb_json *object, const struct wb_harness_
 
 /* Writes the files into a folder, which exists. */
 WB_MUST_CHECK enum wb_status wb_harness_output_write(const struct wb_harness_result_set *set,
+                                                     const struct wb_harness_bands *bands,
                                                      const char *folder);
 
 /* A table for a terminal: each step with its forces and least radius. */

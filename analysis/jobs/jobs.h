@@ -1,10 +1,10 @@
 /* Runs many jobs: on this machine's cores, or as a Slurm job array.
  *
- * A job makes one output folder, as `solve` does with -o: by a function, called in a worker process
- * on this machine, or by the equivalent command line of wirebench, executed by a Slurm task. It
- * writes OUTPUT.partial; the folder gets its final name when the job succeeded (exit code 0). So an
- * output that exists is complete, and its job is not run again: the same call resumes interrupted
- * jobs and repeats failed ones.
+ * A job makes one output folder, such as a dataset, as `solve` does with -o: by a function, called
+ * in a worker process on this machine, or by the equivalent command line of wirebench, executed by
+ * a Slurm task. It writes OUTPUT.partial; the folder gets its final name when the job succeeded
+ * (exit code 0). So an output that exists is complete, and its job is not run again: the same call
+ * resumes interrupted jobs and repeats failed ones.
  *
  * A worker process is a fork of this one. It exits without this process's exit handlers, and its
  * crash does not affect this process. To avoid locks that are held by a thread the fork does not
@@ -31,7 +31,8 @@ struct wb_job {
     void *context;
     const char *const *arguments; /* of the equivalent command of wirebench: NULL-terminated,
                                      without the program and without `-o OUTPUT`, which is added */
-    const char *output; /* folder that the job makes; missing parent folders are created */
+    const char *output;  /* folder that the job makes; missing parent folders are created */
+    const char *product; /* file without which that folder is not complete; NULL: dataset.json */
     double cost;  /* expected duration in any unit: the longest jobs start first; 0: unknown */
     bool replace; /* an existing output is outdated: make it again, and replace it once the new one
                      is complete */

@@ -16,7 +16,8 @@
 static const double submit_time = 120.0; /* s */
 
 /* Runs in the folder of the list; its argument is the folder of the runs. A line contains log,
- * output, what to do with an existing output, and the command line, all quoted for a shell. */
+ * output, what to do with an existing output, the file that makes it complete, and the command
+ * line, all quoted for a shell. */
 /* clang-format off */
 static const char script[] =
     "#!/bin/sh\n"
@@ -25,10 +26,10 @@ static const char script[] =
     "line=$(sed -n \"${SLURM_ARRAY_TASK_ID}p\" jobs.txt) && [ -n \"$line\" ] || exit 1\n"
     "cd \"$1\" || exit 1\n"
     "eval \"set -- $line\"\n"
-    "log=$1 output=$2 old=$3\n"
-    "shift 3\n"
+    "log=$1 output=$2 old=$3 product=$4\n"
+    "shift 4\n"
     "exec >\"$log\" 2>&1 </dev/null\n"
-    "[ \"$old\" = replace ] || [ ! -e \"$output/dataset.json\" ] || { echo \"$output exists already\"; exit 0; }\n"
+    "[ \"$old\" = replace ] || [ ! -e \"$output/$product\" ] || { echo \"$output exists already\"; exit 0; }\n"
     "export OMP_NUM_THREADS=\"${SLURM_CPUS_PER_TASK:-1}\"\n"
     "export OPENBLAS_NUM_THREADS=\"$OMP_NUM_THREADS\"\n"
     "echo \"$* -o $output.partial\"\n"
@@ -42,7 +43,7 @@ static const char script[] =
     "while kill -0 $run 2>/dev/null; do wait $run; code=$?; done\n"
     "trap - TERM\n"
     "[ $code -eq 0 ] || { echo \"exit code $code\"; exit $code; }\n"
-    "[ -e \"$output.partial/dataset.json\" ] || { echo \"it made no dataset\"; exit 1; }\n"
+    "[ -e \"$output.partial/$product\" ] || { echo \"it made no $product\"; exit 1; }\n"
     "set -e\n"
     "if [ \"$old\" = replace ] && [ -e \"$output\" ]; then\n"
     "    rm -rf -- \"$output.outdated\"\n"
@@ -93,8 +94,12 @@ static enum wb_status write_list(const struct wb_jobs_plan *plan, const char *fo
         WB_TRY(find_self(program));
     for (int k = 0; k < n; k++) {
         const struct wb_job *const job = items[k]->job;
-        const char *const head[] = {items[k]->log, items[k]->output,
-                                    job->replace ? "replace" : "keep", program, NULL};
+        const char *const head[] = {items[k]->log,
+                                    items[k]->output,
+                                    job->replace ? "replace" : "keep",
+                                    wb_jobs_plan_product(items[k]),
+                                    program,
+                                    NULL};
         append_words(&text, head);
         append_words(&text, job->arguments);
         wb_text_append(&text, "\n");

@@ -194,16 +194,21 @@ int wb_jobs_plan_count(const struct wb_jobs_plan *plan, enum wb_jobs_plan_state 
 
 /* --- outputs --- */
 
-static bool has_dataset(const char *folder)
+const char *wb_jobs_plan_product(const struct wb_jobs_plan_item *item)
+{
+    return item->job->product ? item->job->product : "dataset.json";
+}
+
+static bool has_product(const struct wb_jobs_plan_item *item, const char *folder)
 {
     char path[WB_PATH];
-    return wb_file_join(path, folder, "dataset.json") == WB_OK && wb_file_exists(path);
+    return wb_file_join(path, folder, wb_jobs_plan_product(item)) == WB_OK && wb_file_exists(path);
 }
 
 bool wb_jobs_plan_is_made(const struct wb_jobs_plan_item *item)
 {
     struct stat now;
-    if (stat(item->output, &now) != 0 || !has_dataset(item->output))
+    if (stat(item->output, &now) != 0 || !has_product(item, item->output))
         return false;
     return !item->was_there || now.st_dev != item->old_device || now.st_ino != item->old_inode;
 }
@@ -215,14 +220,14 @@ bool wb_jobs_plan_is_blocked(struct wb_jobs_plan *plan, struct wb_jobs_plan_item
         return false;
     wb_jobs_plan_clear(plan);
     item->state = WB_JOBS_PLAN_FAILED;
-    wb_error("run '%s' not started: '%s' exists but has no dataset.json; move it away",
-             item->job->name, item->output);
+    wb_error("run '%s' not started: '%s' exists but has no %s; move it away", item->job->name,
+             item->output, wb_jobs_plan_product(item));
     return true;
 }
 
 bool wb_jobs_plan_is_partial_whole(const struct wb_jobs_plan_item *item)
 {
-    return has_dataset(item->partial);
+    return has_product(item, item->partial);
 }
 
 static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *walk)

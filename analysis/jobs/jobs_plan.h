@@ -65,7 +65,10 @@ bool wb_jobs_plan_is_made(const struct wb_jobs_plan_item *item);
  * if so, reports it and marks the run as failed. */
 bool wb_jobs_plan_is_blocked(struct wb_jobs_plan *plan, struct wb_jobs_plan_item *item);
 
-/* Whether the folder that the run writes has a dataset. */
+/* The file that a complete output has. */
+const char *wb_jobs_plan_product(const struct wb_jobs_plan_item *item);
+
+/* Whether the folder that the run writes has its product. */
 bool wb_jobs_plan_is_partial_whole(const struct wb_jobs_plan_item *item);
 
 /* Removes what an unfinished run left. With `keep_usable`, keeps a curve that was cut short (it has

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_statistics_double.h>
-
 #include "analysis/dataset/fit.h"
 #include "analysis/predict/hypercube.h"
 #include "base/memory.h"
@@ -113,13 +111,8 @@ static bool count_run(void *context, int index, enum wb_status status)
 /* Median and 90 % band of n numbers, which are sorted in place; without the model's error. */
 static struct wb_bands_interval find_band(double *numbers, int n)
 {
-    const size_t size = (size_t)n;
-    struct wb_bands_interval band;
-    wb_fit_sort(numbers, size);
-    band.median = gsl_stats_quantile_from_sorted_data(numbers, 1, size, 0.5);
-    band.low = gsl_stats_quantile_from_sorted_data(numbers, 1, size, tail);
-    band.high = gsl_stats_quantile_from_sorted_data(numbers, 1, size, 1.0 - tail);
-    return band;
+    const struct wb_fit_band band = wb_fit_band(numbers, (size_t)n, tail);
+    return (struct wb_bands_interval){.median = band.median, .low = band.low, .high = band.high};
 }
 
 static void widen(struct wb_bands_interval *band, double of)

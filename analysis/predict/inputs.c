@@ -16,8 +16,6 @@ enum {
     TOLERANCES = 3 /* inputs of a law without specimens */
 };
 
-/* Largest hardening exponent, as in properties files, and with a kinematic share of hardening. */
-static const double most_exponent = 2.0, straight_exponent = 1.0;
 /* Relative difference up to which diameters are equal. */
 static const double same_diameter = 1e-6;
 
@@ -76,15 +74,6 @@ static enum wb_status check_properties(const struct wb_properties *p,
     return WB_OK;
 }
 
-static void take_specimens(struct wb_inputs_wires *wires, const struct wb_properties *p)
-{
-    const struct wb_material *law[WB_PROPERTIES_MOST_SPECIMENS];
-    for (int i = 0; i < p->n_specimens; i++)
-        law[i] = &p->specimens[i].ludwik;
-    wb_specimens_init(&wires->specimens, p->n_specimens, law);
-    wires->from_specimens = true;
-}
-
 static enum wb_status take_properties(struct wb_inputs_wires *wires,
                                       const struct wb_bundle_spread *spread,
                                       const struct wb_wire *wire, const char *path)
@@ -95,9 +84,8 @@ static enum wb_status take_properties(struct wb_inputs_wires *wires,
         status = check_properties(p, spread, wire, path);
     if (status == WB_OK) {
         keep_rule(wires, &p->law);
-        if (p->n_specimens >= WB_SPECIMENS_LEAST)
-            take_specimens(wires, p);
-        else
+        wires->from_specimens = wb_specimens_take(&wires->specimens, p);
+        if (!wires->from_specimens)
             keep_law(wires, spread, &p->material);
         if (wires->from_specimens)
             snprintf(wires->source, sizeof wires->source, "%d specimens of %.60s", p->n_specimens,
@@ -279,9 +267,8 @@ static bool read_law(const struct wb_inputs_wires *wires, int count, struct read
         q[2] += stress;
         q[3] += stress;
     }
-    const bool is_bent = wires->isotropic_share == 1.0 || wires->is_combined;
-    const bool is_law =
-        wb_specimens_law(q, is_bent ? most_exponent : straight_exponent, &wire->material);
+    const bool is_law = wb_specimens_law(
+        q, wb_specimens_most_exponent(wires->isotropic_share, wires->is_combined), &wire->material);
     wb_law_init_ludwik(&wire->law, &wire->material);
     wire->law.isotropic_share = wires->isotropic_share;
     wire->law.is_combined = wires->is_combined;

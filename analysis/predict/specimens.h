@@ -19,6 +19,8 @@
 
 #include <stdbool.h>
 
+#include "analysis/calibration/properties/properties.h"
+#include "fe/material/law.h"
 #include "fe/material/material.h"
 
 enum {
@@ -34,8 +36,9 @@ struct wb_specimens {
     double deviation[WB_SPECIMENS_MOST][WB_SPECIMENS_QUANTITIES];
 };
 
-/* Initialises from n laws, WB_SPECIMENS_LEAST to WB_SPECIMENS_MOST. */
-void wb_specimens_init(struct wb_specimens *specimens, int n, const struct wb_material *const *law);
+/* Initialises from the specimens of a calibration. False, without a change, if there are fewer than
+ * WB_SPECIMENS_LEAST. */
+bool wb_specimens_take(struct wb_specimens *specimens, const struct wb_properties *properties);
 
 /* Numbers needed for a draw: n + 1. */
 int wb_specimens_dimensions(const struct wb_specimens *specimens);
@@ -49,5 +52,16 @@ void wb_specimens_draw(const struct wb_specimens *specimens, int wires, const do
 void wb_specimens_quantities(const struct wb_material *law, double q[WB_SPECIMENS_QUANTITIES]);
 bool wb_specimens_law(const double q[WB_SPECIMENS_QUANTITIES], double most_exponent,
                       struct wb_material *law);
+
+/* Largest n of Ludwik's law with a hardening rule (struct wb_law): 2 as in properties files; 1 with
+ * a kinematic share. */
+double wb_specimens_most_exponent(double isotropic_share, bool is_combined);
+
+/* Changes a law, of any form and rule, as the draw q differs from the specimens' mean: its first
+ * loading is multiplied, at each strain, by the ratio of the stresses of the two Ludwik laws; of
+ * Chaboche's form E, sigma_Y and the sum of the hardening at a strain of 1e-2. Form, rule and yield
+ * strains of parallel parts stay, and with q the mean the law does. False as wb_specimens_law(). */
+bool wb_specimens_shift(const struct wb_specimens *specimens,
+                        const double q[WB_SPECIMENS_QUANTITIES], struct wb_law *law);
 
 #endif

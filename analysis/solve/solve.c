@@ -60,23 +60,12 @@ static bool is_first(void)
     return wb_team_rank() == 0;
 }
 
-/* Options without effect are rejected, so that a single run is not mistaken for bands of many. */
-static enum wb_status reject_ignored_options(const struct wb_solve_settings *settings)
-{
-    struct wb_solve_settings defaults = {0};
-    wb_setting_fill(&wb_solve_settings_table, &defaults);
-    const bool is_default = settings->runs == defaults.runs && settings->seed == defaults.seed;
-    if (settings->uncertain || settings->runs == 0 /* never filled */ || is_default)
-        return WB_OK;
-    return wb_fail(WB_ERR_ARGUMENT, "--runs and --seed apply only with --uncertain");
-}
-
 static enum wb_status prepare(struct wb_solve *solve)
 {
     const struct wb_solve_settings *const s = solve->settings;
 
     WB_TRY(solve->kind->prepare(solve));
-    WB_TRY(reject_ignored_options(solve->settings));
+    WB_TRY(wb_solve_settings_check(solve->settings));
     if (!is_first())
         return WB_OK;
     if (s->checkpoint)

@@ -7,6 +7,8 @@
 #include "base/text.h"
 #include "base/units.h"
 
+#define WB_LOG_DOMAIN "solve"
+
 const char *const wb_solve_settings_kinds[WB_SOLVE_KINDS + 1] = {
     "cantilever", "wire3d", "wire1d", "bundle", "bending3p", "harness", NULL};
 
@@ -107,15 +109,18 @@ static const struct wb_setting rows[] = {
      WB_ROW_OPTION("checkpoint-minutes", "M", "With --checkpoint, time between checkpoints"),
      .otherwise = "10", .applies = WB_SOLVE_BUNDLE},
     {WB_ROW_BOOLEAN(wb_solve_settings, uncertain, "uncertain", false),
-     WB_ROW_OPTION("uncertain", NULL,
-                   "Compute 90 % bands from the file's `uncertainty` with the section model"),
-     .applies = WB_SOLVE_BUNDLE},
+     WB_ROW_OPTION(
+         "uncertain", NULL,
+         "Compute bands: of a bundle, 90 % from the file's `uncertainty` with the section "
+         "model; of a harness, 95 % from the specimens of its wires"),
+     .applies = WB_SOLVE_BUNDLE | WB_SOLVE_HARNESS},
     {WB_ROW_INTEGER(wb_solve_settings, runs, "runs", 20, 100000, 500),
-     WB_ROW_OPTION("runs", "N", "With --uncertain, runs of each case"), .applies = WB_SOLVE_BUNDLE},
+     WB_ROW_OPTION("runs", "N", "With --uncertain, runs of each case, or of the harness"),
+     .applies = WB_SOLVE_BUNDLE | WB_SOLVE_HARNESS},
     {WB_ROW_INTEGER(wb_solve_settings, seed, "seed", 0, 1000000000, 1),
      WB_ROW_OPTION("seed", "N",
                    "With --uncertain, seed of the runs; the same seed gives the same output"),
-     .applies = WB_SOLVE_BUNDLE},
+     .applies = WB_SOLVE_BUNDLE | WB_SOLVE_HARNESS},
     {WB_ROW_TEXT(wb_solve_settings, sweep, "sweep"),
      WB_ROW_OPTION("sweep", "KEY=A,B[:KEY=...]",
                    "With --uncertain, cases in place of the file's scenarios: all combinations of "
@@ -125,9 +130,23 @@ static const struct wb_setting rows[] = {
      WB_ROW_OPTION("follow", NULL,
                    "Take steps as lines of JSON from standard input, and answer each with a line"),
      .applies = WB_SOLVE_HARNESS},
+    {WB_ROW_TEXT(wb_solve_settings, part, "part"),
+     WB_ROW_OPTION("part", "K/N",
+                   "With --uncertain, compute the runs of part K of N only, as a task of --slurm"),
+     .applies = WB_SOLVE_HARNESS},
 };
 
 const struct wb_setting_table wb_solve_settings_table = {WB_SETTING_ROWS(rows)};
+
+enum wb_status wb_solve_settings_check(const struct wb_solve_settings *settings)
+{
+    struct wb_solve_settings defaults = {0};
+    wb_setting_fill(&wb_solve_settings_table, &defaults);
+    const bool is_default = settings->runs == defaults.runs && settings->seed == defaults.seed;
+    if (settings->uncertain || settings->runs == 0 /* never filled */ || is_default)
+        return WB_OK;
+    return wb_fail(WB_ERR_ARGUMENT, "--runs and --seed apply only with --uncertain");
+}
 
 const char *wb_solve_settings_kind(const struct wb_solve_settings *settings)
 {

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "base/setting.h"
+#include "base/status.h"
 #include "fe/model/bundle_override.h"
 
 /* Kinds, as bits of the settings that apply to them. */
@@ -64,15 +65,19 @@ struct wb_solve_settings {
     int threads;
     const char *checkpoint;     /* file; NULL: none */
     double checkpoint_interval; /* s; 0: 10 minutes */
-    /* Settings of the section model. */
-    bool uncertain;    /* bands, by analysis/predict/bands.h */
+    /* Settings of the section model, and of harnesses. */
+    bool uncertain;    /* bands, by analysis/predict/bands.h or analysis/harness/harness_bands.h */
     int runs, seed;    /* of the bands */
     const char *sweep; /* cases in place of the file's scenarios; NULL: none */
-    /* Setting of harnesses. */
-    bool follow; /* steps from standard input */
+    /* Settings of harnesses. */
+    bool follow;      /* steps from standard input */
+    const char *part; /* of the runs of the bands, "2/20"; NULL: all */
 };
 
 extern const struct wb_setting_table wb_solve_settings_table;
+
+/* Rejects options without effect, so that a single run is not mistaken for bands of many. */
+WB_MUST_CHECK enum wb_status wb_solve_settings_check(const struct wb_solve_settings *settings);
 
 const char *wb_solve_settings_kind(const struct wb_solve_settings *settings); /* name of the kind */
 

@@ -121,6 +121,97 @@ sed 's/least_radius_mm: 40/least_radius_mm: 200/' own.yaml >tight.yaml
 grep -q '^ *B1 *bend radius down to [0-9.]* mm  LIMIT EXCEEDED (200 mm)' tight || fail "the radius's limit: $(cat tight)"
 grep -q 'B[23].* bent beyond the calibration' said || fail "the range is not named: $(cat said)"
 
+# So is what `calibrate` writes for a computed bundle, with its law, mass and diameter.
+"$wirebench" calibrate "$root/simulations/7-type3" -o taped.yaml --no-figure >said 2>&1 || fail "calibrate: $(cat said)"
+sed 's|wire: bundle-7|wire: ./taped.yaml|' "$root/fixtures/harnesses/small.yaml" >taped-harness.yaml
+"$wirebench" solve harness taped-harness.yaml --law elastic --json >out.json 2>warned || fail "a bundle: $(cat warned)"
+python3 - out.json taped.yaml <<'PYTHON' || fail 'the wire is not the calibrated bundle'
+import json, math, re, sys
+wire = json.load(open(sys.argv[1]))["wires"][0]
+value = lambda key: float(re.search(r"^%s: (\S+)" % key, open(sys.argv[2]).read(), re.M).group(1))
+assert wire["file"] == "taped.yaml" and wire["mass_per_length_kg_m"] == value("mass_per_length_kg_m")
+assert wire["outer_diameter_mm"] == value("outer_diameter_mm")
+rigidity = value("youngs_modulus_MPa") * math.pi * value("outer_diameter_mm") ** 4 / 64
+assert math.isclose(wire["flexural_rigidity_N_mm2"], rigidity, rel_tol=1e-9)
+PYTHON
+
+# Bands from the specimens of a wire, beside one without: the same bytes again, and none left behind.
+cat >bands.yaml <<YAML
+kind: harness
+name: bands
+wires:
+  - {name: lead, wire: $root/docs/cards/type1.yaml}
+  - {name: trunk, wire: bundle-7}
+root: {name: R}
+branches:
+  - {name: B1, from: R, to: J, wire: trunk, length_mm: 80}
+  - {name: B2, from: J, to: K1, wire: lead, length_mm: 90, angle_deg: 30}
+connectors:
+  - {name: K1, mass_g: 2}
+steps: [hang, take_off]
+YAML
+"$wirebench" solve harness bands.yaml --uncertain --runs 40 -o bands >said 2>warned || fail "--uncertain: $(cat warned)"
+for part in 'medians and 95 % bands of 40 runs; drawn from specimens: lead (3 of type1.yaml); taken as exact: trunk' \
+    'of its nominal shape (at 90 mm)' 'residual shape: up to'; do
+    grep -qF "$part" said || fail "--uncertain: '$part' is not said: $(cat said)"
+done
+"$wirebench" solve harness bands.yaml --uncertain --runs 40 --json >out.json 2>/dev/null || fail '--uncertain --json'
+cmp -s out.json bands/harness.json || fail 'two runs of --uncertain differ'
+"$wirebench" info --schema harness >harness.schema.json || fail 'no schema of harness.json'
+python3 - bands harness.schema.json <<'PYTHON' || fail 'the bands are wrong'
+import csv, json, math, sys
+result = json.load(open(sys.argv[1] + "/harness.json"))
+try:
+    from jsonschema import Draft202012Validator
+    Draft202012Validator(json.load(open(sys.argv[2]))).validate(result)
+except ImportError:
+    pass
+bands = result["uncertainty"]
+assert [w["specimens"] for w in bands["wires"]] == [3, 0] and bands["deviating_runs"] == []
+moment = bands["steps"][0]["forces"][0]["moment_N_mm"]
+nominal = result["steps"][0]["forces"][0]["moment_N_mm"]
+assert moment["low"] < moment["median"] < moment["high"] and abs(moment["median"] / nominal - 1) < 0.02
+near, far = bands["steps"][0]["branches"]
+assert 0 <= near["distance_mm"] < far["distance_mm"] and 0 < far["median_distance_mm"] < far["distance_mm"]
+assert bands["residual_distance_mm"]["low"] < result["residual_shape"]["distance_mm"]
+rows = list(csv.DictReader(open(sys.argv[1] + "/bands.csv")))
+assert {row["runs"] for row in rows} == {"40"} and {row["step"] for row in rows} == {"1", "2"}
+row = next(r for r in rows if r["name"] == "R" and r["quantity"] == "moment_N_mm")
+assert all(math.isclose(float(row[k]), moment[k], rel_tol=1e-12) for k in ("median", "low", "high"))
+row = next(r for r in rows if r["name"] == "B2")
+assert row["quantity"] == "distance_mm" and row["low"] == ""
+assert math.isclose(float(row["high"]), far["distance_mm"], rel_tol=1e-12)
+assert rows[-1]["quantity"] == "residual_distance_mm"
+PYTHON
+# The same in parts, here or as tasks of Slurm, of which complete ones are kept; parts of another seed are not.
+"$wirebench" solve harness bands.yaml --uncertain --runs 40 --solve --workers 2 -o parts >said 2>warned ||
+    fail "--solve: $(cat warned)"
+cmp -s bands/harness.json parts/harness.json && cmp -s bands/bands.csv parts/bands.csv || fail 'parts give other bytes'
+[ "$(ls parts.jobs | grep -c 'part-[12]-of-2$')" -eq 2 ] || fail "parts: $(ls parts.jobs)"
+stat -c %y%i parts.jobs/part-*/part.json >before
+"$wirebench" solve harness bands.yaml --uncertain --runs 40 --solve -o parts --force >said 2>&1 || fail 'again'
+stat -c %y%i parts.jobs/part-*/part.json | cmp -s - before || fail 'complete parts are computed again'
+ends_with 3 'run the same command again' solve harness bands.yaml --uncertain --runs 40 --slurm-dry-run -o tasks
+for task in 1 2; do
+    (cd tasks.jobs/slurm-1 && SLURM_ARRAY_TASK_ID=$task sh array.sh "$folder") || fail "task $task of Slurm"
+done
+"$wirebench" solve harness bands.yaml --uncertain --runs 40 --slurm -o tasks >said 2>warned || fail "--slurm: $(cat warned)"
+cmp -s bands/harness.json tasks/harness.json || fail 'the tasks of Slurm give other bytes'
+"$wirebench" solve harness bands.yaml --uncertain --runs 40 --seed 2 --solve -o parts --force >said 2>&1 || fail '--seed 2'
+cmp -s bands/bands.csv parts/bands.csv && fail 'parts of another seed are taken'
+ends_with 2 "--part: expected K/N" solve harness bands.yaml --uncertain --part 3/2 -o none
+ends_with 2 'need --uncertain and -o' solve harness bands.yaml --uncertain --solve
+ends_with 2 'remove --part' solve harness bands.yaml --uncertain --solve --part 1/2 -o none
+[ ! -e none ] || fail 'a wrong part leaves a folder'
+
+"$wirebench" solve harness bands.yaml -o bands --force >said 2>/dev/null || fail 'without --uncertain'
+[ ! -e bands/bands.csv ] || fail 'bands of an earlier run are left'
+ends_with 2 'no wire has it: trunk (bundle-7.yaml), lead (type3.yaml)' solve harness small --uncertain -o none
+[ ! -e none ] || fail 'a harness without scatter leaves a folder'
+ends_with 2 'expected at least 40' solve harness bands.yaml --uncertain --runs 30
+ends_with 2 'only with --uncertain' solve harness small --seed 2
+ends_with 2 'remove --uncertain' solve harness small --uncertain --follow
+
 ends_with 1 --force solve harness small -o out
 ends_with 1 --force solve harness small -o other --vtk vtk
 ends_with 2 '--frames needs' solve harness small --frames 3

@@ -62,8 +62,9 @@ static struct wb_json *build_json(const void *context)
         wb_numbers_create(&results->campaign->head, "simulation", &results->outcome);
     WB_PUT(root, &wb_harnesses_kind_keys, struct wb_harnesses, results->campaign);
     put_found(root, results);
-    wb_harness_output_put_result(wb_json_set_object(root, "harness"), &results->set);
-    wb_harness_output_put_result(wb_json_set_object(root, "elastic"), &results->elastic);
+    wb_harness_output_put_result(wb_json_set_object(root, "harness"), &results->set,
+                                 results->bands);
+    wb_harness_output_put_result(wb_json_set_object(root, "elastic"), &results->elastic, NULL);
     return root;
 }
 

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "analysis/harness/harness_bands_output.h"
 #include "analysis/report/harnesses/harnesses_kind.h"
 #include "analysis/report/pages.h"
 #include "base/config.h"
@@ -93,6 +94,69 @@ static const struct wb_harness_item *limits_of(const struct wb_harness_plan *pla
     return holder < plan->n_items ? &plan->items[holder] : &none;
 }
 
+/* Step, median and band in a unit, of the step that has the nominal largest value. */
+static void put_band(struct wb_document_table *table, const struct wb_fit_band *band,
+                     const struct wb_harness_extreme *largest, double unit)
+{
+    const double high = band->high / unit;
+    put_step_number(table, largest->value, largest->step);
+    put_rounded(table, WB_TONE_PLAIN, band->median / unit, 5e-4);
+    if (isfinite(high))
+        wb_pages_cell(table, WB_TONE_PLAIN, "%.*f to %.*f", decimals(high), band->low / unit,
+                      decimals(high), high);
+    else
+        wb_pages_cell_number(table, (double)NAN, 0);
+}
+
+static void put_band_table(struct wb_document *document, const struct wb_harness_bands *bands)
+{
+    static const struct wb_document_column columns[] = {
+        {"At"},
+        {.heading = "Force in step", .right = true, .wraps = true},
+        {.heading = "Median (N)", .right = true, .wraps = true},
+        {.heading = "95 % band (N)", .right = true, .wraps = true},
+        {.heading = "Moment in step", .right = true, .wraps = true},
+        {.heading = "Median (N\xc2\xa0mm)", .right = true, .wraps = true},
+        {.heading = "95 % band (N\xc2\xa0mm)", .right = true, .wraps = true},
+    };
+    struct wb_document_table *const table = wb_document_table(
+        document, "Largest force and moment during the steps that have the largest ones above.",
+        WB_COUNT(columns), columns);
+    for (int i = 0; i < bands->nominal->plan->n_items; i++) {
+        struct wb_harness_extreme force, moment;
+        wb_harness_found_largest(bands->nominal, i, &force, &moment);
+        wb_pages_row(table, false, bands->nominal->plan->items[i].name);
+        put_band(table, &bands->steps[force.step].forces[i].largest_force, &force, 1.0);
+        put_band(table, &bands->steps[moment.step].forces[i].largest_moment, &moment, WB_NMM);
+    }
+}
+
+/* What the bands are of, and which runs deviate. */
+static void put_bands(struct wb_document *document, const struct wb_harness_bands *bands)
+{
+    const struct wb_harness_plan *const plan = bands->nominal->plan;
+    struct wb_text drawn = {0}, deviants = {0}, text = {0};
+    for (int i = 0; i < plan->n_wires; i++)
+        if (wb_harness_bands_is_drawn(&plan->wires[i]))
+            wb_text_append(&drawn, "%s%s (%d)", drawn.length > 0 ? ", " : "", plan->wires[i].name,
+                           plan->wires[i].specimens.n);
+    wb_pages_put(
+        document, WB_BLOCK_PARAGRAPH, WB_TONE_PLAIN,
+        "Bands: %g %% of %d runs, from the scatter of the specimens of %s. Other wires are "
+        "taken as exact.",
+        WB_HARNESS_BANDS_CONFIDENCE / WB_PERCENT, bands->settings.runs, wb_text_string(&drawn));
+    put_band_table(document, bands);
+    wb_harness_bands_output_append_deviants(&deviants, bands);
+    if (deviants.length > 0) {
+        wb_text_append(&text, "Bands: ");
+        wb_text_append_escaped(&text, wb_text_string(&deviants));
+        wb_text_append(&text, ".");
+        wb_pages_put_text(document, WB_BLOCK_PARAGRAPH, WB_TONE_WARNING, &text);
+    }
+    wb_text_release(&drawn);
+    wb_text_release(&deviants);
+}
+
 static void put_items(struct wb_document *document, const struct wb_harnesses_results *results)
 {
     static const struct wb_document_column columns[] = {
@@ -147,6 +211,8 @@ static void put_items(struct wb_document *document, const struct wb_harnesses_re
                   item->largest_moment > 0.0 && moment.value > item->largest_moment,
                   is_twist_sensitive(set, i));
     }
+    if (results->bands)
+        put_bands(document, results->bands);
 }
 
 /* --- branches --- */

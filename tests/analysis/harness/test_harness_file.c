@@ -46,6 +46,65 @@ static void file_is_read_into_si_units(void **unused)
     free(plan);
 }
 
+/* Reads the sample with this `wire` of its trunk. */
+static enum wb_status read_trunk(struct wb_harness_plan *plan, const char *wire)
+{
+    char line[200];
+    snprintf(line, sizeof line, "  - {name: trunk, wire: %s}", wire);
+    write_harness(file, 4, line);
+    memset(plan, 0, sizeof *plan);
+    return wb_harness_file_read(plan, file);
+}
+
+static void a_bundle_file_stands_for_its_calibrated_beam(void **unused)
+{
+    (void)unused;
+    static const char *const beams[][2] = {{"7-type3", "bundle-7"},
+                                           {"12-type3", "bundle-12"},
+                                           {"19-type3", "bundle-19"},
+                                           {"19-mixed", "bundle-19-mixed"},
+                                           {"27-type3", "bundle-27"}};
+    struct wb_harness_plan *const plan = make_plan(), *const beam = make_plan();
+    for (size_t i = 0; i < sizeof beams / sizeof beams[0]; i++) {
+        assert_int_equal(read_trunk(beam, beams[i][1]), WB_OK);
+        assert_int_equal(read_trunk(plan, beams[i][0]), WB_OK);
+        assert_memory_equal(&plan->wires[0], &beam->wires[0], sizeof plan->wires[0]);
+        assert_true(plan->wires[0].diameter > 4e-3);
+    }
+    /* A path relative to the harness file, to a bundle with a beam relative to the bundle. */
+    char path[WB_PATH], from[WB_PATH];
+    static const char bundle[] =
+        "name: own\nwires: [{wire: type3}]\npublished: {beam: ./own.yaml}\n";
+    snprintf(path, sizeof path, "%s/bundle.yaml", folder);
+    assert_int_equal(wb_file_write(path, bundle, strlen(bundle)), WB_OK);
+    assert_int_equal(wb_file_find_fixture(from, "wires", "type2", NULL), WB_OK);
+    char *text;
+    size_t size;
+    assert_int_equal(wb_file_read(from, &text, &size), WB_OK);
+    snprintf(path, sizeof path, "%s/own.yaml", folder);
+    assert_int_equal(wb_file_write(path, text, size), WB_OK);
+    free(text);
+    assert_int_equal(read_trunk(plan, "./bundle.yaml"), WB_OK);
+    assert_string_equal(plan->wires[0].file, "own.yaml");
+    free(plan);
+    free(beam);
+}
+
+static void a_bundle_file_without_a_beam_is_rejected_with_what_to_do(void **unused)
+{
+    (void)unused;
+    struct wb_harness_plan *const plan = make_plan();
+    keep_messages();
+    assert_int_equal(read_trunk(plan, "template"), WB_ERR_FORMAT);
+    assert_message("h.yaml:4: wire: ");
+    assert_message("template.yaml is a bundle file without a calibrated beam (published: beam)");
+    assert_message("wirebench calibrate");
+    assert_int_equal(read_trunk(plan, "no-such"), WB_ERR_NOT_FOUND);
+    assert_message("h.yaml:4: wire");
+    release_messages();
+    free(plan);
+}
+
 /* Branch B2 leaves at 30 degrees towards 90 degrees around x from up: towards -y. */
 static void branch_leaves_at_its_angle(void **unused)
 {
@@ -290,6 +349,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(file_is_read_into_si_units),
+        cmocka_unit_test(a_bundle_file_stands_for_its_calibrated_beam),
+        cmocka_unit_test(a_bundle_file_without_a_beam_is_rejected_with_what_to_do),
         cmocka_unit_test(branch_leaves_at_its_angle),
         cmocka_unit_test(branches_may_stand_in_any_order),
         cmocka_unit_test(rotation_has_the_direction_and_up),

@@ -167,4 +167,19 @@ report 0
 assert_contains out '3 of 3 datasets used'
 ls r.jobs/*.slurm sim/*.partial 2>/dev/null && fail 'something is left'
 
+# The runs of a harness's bands as an array.
+cat >h.yaml <<YAML
+kind: harness
+name: h
+wires: [{name: lead, wire: $(cd "$(dirname "$0")/../../.." && pwd)/docs/cards/type1.yaml}]
+root: {name: R}
+branches: [{name: B, from: R, to: K, wire: lead, length_mm: 90}]
+steps: [hang]
+YAML
+"$wirebench" solve harness h.yaml --uncertain --runs 40 -o h >/dev/null 2>"$folder/err" || fail "$(cat "$folder/err")"
+"$wirebench" solve harness h.yaml --uncertain --runs 40 --slurm -o array >/dev/null 2>"$folder/err" ||
+    fail "the bands by Slurm: $(cat "$folder/err")"
+cmp -s h/harness.json array/harness.json || fail 'the bands by Slurm differ'
+[ "$(wc -l <array.jobs/slurm-1/jobs.txt)" -eq 2 ] || fail 'the runs are not two tasks'
+
 finish 'jobs of a real Slurm'

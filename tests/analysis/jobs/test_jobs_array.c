@@ -115,7 +115,7 @@ static void only_what_is_missing_is_submitted(void **unused)
     assert_non_null(
         strstr(jobs_fixture_said, "\n    line 9 of what went wrong\n    exit code 1\n"));
     assert_non_null(strstr(jobs_fixture_said, "run 'e' failed: Slurm's task 12_5 is FAILED"));
-    assert_non_null(strstr(jobs_fixture_said, "\n    it made no dataset\n"));
+    assert_non_null(strstr(jobs_fixture_said, "\n    it made no dataset.json\n"));
 
     memcpy(runs, five, sizeof runs);
     runs[1].words[0] = runs[4].words[0] = "make";

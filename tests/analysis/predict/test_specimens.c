@@ -1,4 +1,4 @@
-#include "analysis/predict/specimens.h"
+#include "analysis/predict/specimens_private.h"
 
 #include <stdlib.h>
 
@@ -213,6 +213,85 @@ static void nine_of_ten_means_of_further_wires_are_in_the_interval(void **state)
     assert_close((double)within / CASES, 0.9, 0.025);
 }
 
+/* Laws of all forms, fitted to nothing: 3000 MPa at first, yielding in the range of a bundle. */
+static void make_laws(struct wb_law law[4])
+{
+    static const struct wb_law_part parts[] = {
+        {1000e6, 5e-4}, {1500e6, 2e-3}, {300e6, 6e-3}, {200e6, (double)INFINITY}};
+    static const struct wb_law_back backs[] = {{2000e6, 300.0}, {200e6, 0.0}};
+    static const struct wb_material ludwik = {.hardening = WB_HARDENING_ISOTROPIC_POWER,
+                                              .youngs_modulus = 3000e6,
+                                              .poissons_ratio = 0.39,
+                                              .yield_stress = 3e6,
+                                              .strength_coefficient = 500e6,
+                                              .hardening_exponent = 0.8};
+    wb_law_init_ludwik(&law[0], &ludwik);
+    wb_law_init_parallel(&law[1], parts, 4, 0.0, 0.39);
+    wb_law_init_parallel(&law[2], parts, 3, 0.2, 0.39);
+    law[2].is_combined = true;
+    wb_law_init_chaboche(&law[3], &ludwik, 2e6, 100.0, backs, 2);
+}
+
+static void laws_of_all_forms_stay_with_the_mean_of_the_specimens(void **state)
+{
+    (void)state;
+    struct wb_material material[5];
+    struct wb_law laws[4];
+    make(1, 5, material);
+    make_laws(laws);
+    for (int i = 0; i < 4; i++) {
+        struct wb_law law = laws[i];
+        (void)wb_specimens_shift(&specimens, specimens.mean, &law);
+        for (double e = 1e-4; e < 0.03; e *= 1.3)
+            assert_close_relative(wb_law_virgin_stress(&law, e, NULL),
+                                  wb_law_virgin_stress(&laws[i], e, NULL), 1e-9);
+    }
+}
+
+/* Stress at a strain over the nominal one, relative to the same ratio of the two Ludwik laws. */
+static double relative_change(const struct wb_law *law, const struct wb_law *nominal,
+                              const struct wb_law *to, const struct wb_law *from, double e)
+{
+    return wb_law_virgin_stress(law, e, NULL) / wb_law_virgin_stress(nominal, e, NULL) /
+           (wb_law_virgin_stress(to, e, NULL) / wb_law_virgin_stress(from, e, NULL));
+}
+
+/* Chaboche's law has the changed stress at a strain of 1e-2; parallel parts have it at the yield
+ * strains, but for the few draws with a part that would soften. */
+static void laws_of_all_forms_follow_the_draw(void **state)
+{
+    (void)state;
+    static const double yields[] = {5e-4, 2e-3, 6e-3};
+    struct wb_material material[5], mean = {.hardening = WB_HARDENING_ISOTROPIC_POWER}, drawn;
+    struct wb_law laws[4], from, to;
+    int n = 0, n_exact = 0;
+    make(1, 5, material);
+    make_laws(laws);
+    draw_all(1);
+    drawn = mean;
+    assert_true(wb_specimens_law(specimens.mean, 2.0, &mean));
+    wb_law_init_ludwik(&from, &mean);
+    for (int k = 0; k < 400; k++) {
+        (void)wb_specimens_law(draws[k], 2.0, &drawn);
+        wb_law_init_ludwik(&to, &drawn);
+        for (int i = 0; i < 4; i++) {
+            struct wb_law law = laws[i];
+            (void)wb_specimens_shift(&specimens, draws[k], &law);
+            assert_int_equal(wb_law_check(&law, NULL), WB_OK);
+            if (i == 0 || i == 3)
+                assert_close_relative(law.material.youngs_modulus / laws[i].material.youngs_modulus,
+                                      drawn.youngs_modulus / mean.youngs_modulus, 1e-12);
+            if (i == 3)
+                assert_close(relative_change(&law, &laws[i], &to, &from, 1e-2), 1.0, 1e-9);
+            for (int y = 0; y < 3 && (i == 1 || i == 2); y++, n++)
+                n_exact +=
+                    fabs(relative_change(&law, &laws[i], &to, &from, yields[y]) - 1.0) < 1e-9;
+        }
+    }
+    print_message("parallel parts: %d of %d stresses are those of the draw\n", n_exact, n);
+    assert_true(n_exact > 0.9 * n);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -221,6 +300,8 @@ int main(void)
         cmocka_unit_test(draws_have_the_predictive_t_distribution),
         cmocka_unit_test(draws_keep_the_correlations_of_the_specimens),
         cmocka_unit_test(directions_in_which_specimens_do_not_differ_stay_exact),
+        cmocka_unit_test(laws_of_all_forms_stay_with_the_mean_of_the_specimens),
+        cmocka_unit_test(laws_of_all_forms_follow_the_draw),
         cmocka_unit_test(nine_of_ten_means_of_further_wires_are_in_the_interval),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -69,7 +69,7 @@ static void invalid_file_is_rejected_with_its_line(void **state)
         {HEAD "harness: none\n", "c.yaml:4: harness: no 'none' among the shipped harnesses"},
         {HEAD "harness: ./none.yaml\n", "c.yaml:4: harness: "},
         {HEAD "harness: [small]\n", "c.yaml:4: harness: expected a text"},
-        {HEAD "harness: small\nruns: 3\n", "c.yaml:5: runs: unknown key"},
+        {HEAD "harness: small\nrun: 3\n", "c.yaml:5: run: unknown key"},
         {HEAD "harness: small\nharness: door\n", "c.yaml:5: "},
         {HEAD "harness: {\n", "c.yaml:5: "},
         {HEAD "harness: small\nlaboratory: {report: 1, issued: yesterday}\n", "c.yaml:5: issued"},
@@ -213,6 +213,44 @@ static void numbers_are_those_of_both_computations(void **state)
 }
 
 /* As if the third step had found no equilibrium, and the elastic computation a snap before. */
+/* The lead is a calibrated wire; the trunk is exact. */
+static void bands_stand_beside_the_largest_forces(void **state)
+{
+    (void)state;
+    char line[WB_PATH];
+    struct wb_harnesses own = {.runs = 0};
+    struct wb_harnesses_results of = {.campaign = NULL};
+    struct wb_json *root;
+    const char *const root_folder = getenv("WIREBENCH_SOURCE_ROOT");
+    assert_non_null(root_folder);
+    snprintf(line, sizeof line, "  - {name: lead, wire: %s/docs/cards/type1.yaml}", root_folder);
+    write_harness(in_folder("scatter.yaml"), 5, line);
+    assert_int_equal(wb_kind_read(&wb_harnesses_kind, &own,
+                                  write_text("s.yaml", HEAD "harness: ./scatter.yaml\nruns: 40\n")),
+                     WB_OK);
+    assert_int_equal(wb_harnesses_load(&of, &own), WB_OK);
+    assert_int_equal(of.outcome.n_steps, 3);
+    assert_int_equal(wb_harnesses_compute(&of, 0, NULL, NULL), WB_OK);
+    assert_non_null(of.bands);
+    assert_int_equal(wb_kind_write(&wb_harnesses_kind, &of, in_folder("banded"), true, 0), WB_OK);
+    static const char *const texts[] = {"95 % band (N)", "Bands: 95 % of 40 runs",
+                                        "the specimens of lead (3)"};
+    assert_says_all("banded/report.html", texts, sizeof texts / sizeof texts[0]);
+    assert_true(files_follow_schemas(in_folder("banded")));
+    assert_int_equal(wb_json_read(&root, in_folder("banded/report.json")), WB_OK);
+    assert_non_null(wb_json_get(wb_json_get(root, "harness"), "uncertainty"));
+    assert_null(wb_json_get(wb_json_get(root, "elastic"), "uncertainty"));
+    wb_json_destroy(root);
+    wb_harnesses_release_results(&of);
+    wb_harnesses_release(&own);
+    /* Without scatter the campaign is rejected. */
+    assert_int_equal(wb_kind_read(&wb_harnesses_kind, &own,
+                                  write_text("s.yaml", HEAD "harness: small\nruns: 40\n")),
+                     WB_ERR_ARGUMENT);
+    assert_message("the file of no wire has it");
+    wb_harnesses_release(&own);
+}
+
 static void incomplete_result_is_reported_as_far_as_it_goes(void **state)
 {
     (void)state;
@@ -267,6 +305,7 @@ int main(void)
         cmocka_unit_test(round_off_is_zero),
         cmocka_unit_test(report_says_what_was_found),
         cmocka_unit_test(numbers_are_those_of_both_computations),
+        cmocka_unit_test(bands_stand_beside_the_largest_forces),
         cmocka_unit_test(incomplete_result_is_reported_as_far_as_it_goes),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
