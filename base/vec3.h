@@ -54,4 +54,17 @@ static inline void wb_vec3_turn_back(const double *A, const double *b, double *r
         c[i] = A[i] * b[0] + A[3 + i] * b[1] + A[6 + i] * b[2];
 }
 
+/* C = A B A^T for matrices of 3 x 3, row-major; C is another array than B. */
+static inline void wb_vec3_turn_matrix(const double *A, const double *B, double *restrict C)
+{
+    double AB[9];
+    for (int i = 0; i < 3; i++)
+        wb_vec3_turn_back(B, A + 3 * i, AB + 3 * i);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            C[3 * i + j] =
+                AB[3 * i] * A[3 * j] + AB[3 * i + 1] * A[3 * j + 1] + AB[3 * i + 2] * A[3 * j + 2];
+    }
+}
+
 #endif

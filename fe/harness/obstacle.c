@@ -79,51 +79,33 @@ static double cylinder(const double *size, double edge, const double *q, double 
 {
     const double radius = hypot(q[1], q[2]);
     const double c = radius > 0.0 ? q[1] / radius : 1.0, s = radius > 0.0 ? q[2] / radius : 0.0;
-    const double T[9] = {q[0] < 0.0 ? -1.0 : 1.0, 0.0, 0.0, 0.0, c, s, 0.0, -s, c};
+    const double axes[9] = {q[0] < 0.0 ? -1.0 : 1.0, 0.0, 0.0, 0.0, c, -s, 0.0, s, c};
     const double along[3] = {fabs(q[0]) - 0.5 * size[1] + edge, radius - size[0] + edge,
                              -(double)INFINITY};
     double own[3], own_gradient[9];
     const double distance = outside(along, own, own_gradient);
     if (radius > 0.0)
         own_gradient[8] = own[1] / radius;
-    for (int i = 0; i < 3; i++) {
-        n[i] = T[i] * own[0] + T[3 + i] * own[1];
-        for (int k = 0; k < 3; k++) {
-            gradient[3 * i + k] = 0.0;
-            for (int a = 0; a < 3; a++) {
-                for (int b = 0; b < 3; b++)
-                    gradient[3 * i + k] += T[3 * a + i] * own_gradient[3 * a + b] * T[3 * b + k];
-            }
-        }
-    }
+    wb_vec3_turn(axes, own, n);
+    wb_vec3_turn_matrix(axes, own_gradient, gradient);
     return distance - edge;
 }
 
 double wb_obstacle_distance(const struct wb_obstacle *obstacle, const double point[3],
                             double normal[3], double curvature[9])
 {
-    double R[9], q[3], n[3] = {1.0, 0.0, 0.0}, gradient[9] = {0}, distance;
+    double R[9], from[3], q[3], n[3] = {1.0, 0.0, 0.0}, gradient[9] = {0}, distance;
+    for (int k = 0; k < 3; k++)
+        from[k] = point[k] - obstacle->place[k];
     wb_rod_element_matrix(obstacle->rotation, R);
-    for (int k = 0; k < 3; k++) {
-        q[k] = 0.0;
-        for (int i = 0; i < 3; i++)
-            q[k] += R[3 * i + k] * (point[i] - obstacle->place[i]);
-    }
+    wb_vec3_turn_back(R, from, q);
     if (obstacle->kind == WB_OBSTACLE_PLANE)
         distance = q[0];
     else if (obstacle->kind == WB_OBSTACLE_CYLINDER)
         distance = cylinder(obstacle->size, obstacle->edge, q, n, gradient);
     else
         distance = box(obstacle->size, obstacle->edge, q, n, gradient);
-    for (int i = 0; i < 3; i++) {
-        normal[i] = wb_vec3_dot(R + 3 * i, n);
-        for (int k = 0; k < 3; k++) {
-            curvature[3 * i + k] = 0.0;
-            for (int a = 0; a < 3; a++) {
-                for (int b = 0; b < 3; b++)
-                    curvature[3 * i + k] += R[3 * i + a] * gradient[3 * a + b] * R[3 * k + b];
-            }
-        }
-    }
+    wb_vec3_turn(R, n, normal);
+    wb_vec3_turn_matrix(R, gradient, curvature);
     return distance;
 }

@@ -192,19 +192,6 @@ static inline void add_skew(double *restrict C, double sign, const double *b)
     C[7] += sign * b[0];
 }
 
-/* C = R D R^T */
-static void turn_moduli(const double *R, const double *D, double *restrict C)
-{
-    double RD[9];
-    for (int i = 0; i < 3; i++)
-        wb_vec3_turn_back(D, R + 3 * i, RD + 3 * i);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            C[3 * i + j] =
-                RD[3 * i] * R[3 * j] + RD[3 * i + 1] * R[3 * j + 1] + RD[3 * i + 2] * R[3 * j + 2];
-    }
-}
-
 /* Derivatives of one point's (n, -r' x n, m) by (r', spin, spin'), 3 x 3 each; all moduli in
  * space. */
 struct point_tangent {
@@ -225,8 +212,8 @@ static void point_tangent(const struct wb_rod_point *p, struct point_tangent *k)
 
     *k = (struct point_tangent){0};
     /* dn = spin x n + Cn (dr' + r' x spin) + Cc spin' */
-    turn_moduli(p->R, DN, k->fr);
-    turn_moduli(p->R, DC, k->fk);
+    wb_vec3_turn_matrix(p->R, DN, k->fr);
+    wb_vec3_turn_matrix(p->R, DC, k->fk);
     add_times_skew(k->ft, 1.0, k->fr, r);
     add_skew(k->ft, -1.0, p->n);
     /* d(-r' x n) = n x dr' - r' x dn */
@@ -239,7 +226,7 @@ static void point_tangent(const struct wb_rod_point *p, struct point_tangent *k)
         for (int j = 0; j < 3; j++)
             k->mr[3 * i + j] = k->fk[3 * j + i];
     }
-    turn_moduli(p->R, DM, k->mk);
+    wb_vec3_turn_matrix(p->R, DM, k->mk);
     add_times_skew(k->mt, 1.0, k->mr, r);
     add_skew(k->mt, -1.0, p->m);
 }
