@@ -622,16 +622,6 @@ struct wb_rod_node wb_harness_position(const struct wb_harness *h, int branch, d
     return at;
 }
 
-static void add_force(double *sum, const double *force, const double *at)
-{
-    double moment[3];
-    wb_vec3_cross(at, force, moment);
-    for (int k = 0; k < 3; k++) {
-        sum[k] += force[k];
-        sum[3 + k] += moment[k];
-    }
-}
-
 void wb_harness_weight(const struct wb_harness *h, double weight[6])
 {
     static const double parts[NODES] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
@@ -641,7 +631,7 @@ void wb_harness_weight(const struct wb_harness *h, double weight[6])
             double force[3];
             for (int k = 0; k < 3; k++)
                 force[k] = parts[i] * h->elements[e].shape.length * h->elements[e].weight[k];
-            add_force(weight, force, h->placed[NODES * e + i].position);
+            wb_harness_add_force(weight, force, h->placed[NODES * e + i].position);
         }
     }
     for (int i = 0; i < h->n_bodies; i++) {
@@ -649,7 +639,7 @@ void wb_harness_weight(const struct wb_harness *h, double weight[6])
         const int joint = wb_harness_body_arm(h, &h->bodies[i], arm, force);
         for (int k = 0; k < 3; k++)
             arm[k] += wb_harness_joint_node(h, joint)->position[k];
-        add_force(weight, force, arm);
+        wb_harness_add_force(weight, force, arm);
     }
 }
 
@@ -721,7 +711,7 @@ double wb_harness_noise(const struct wb_harness *h)
         widest = fmax(widest, h->width[h->n_joints + e]);
     double touched = 0.0;
     for (int i = 0; i < h->n_contacts; i++)
-        touched = fmax(touched, h->elements[h->contacts[i].element].contact_stiffness);
+        touched = fmax(touched, h->elements[h->contacts[i].touch.element].contact_stiffness);
     /* Positions are rounded. */
     return h->noise +
            DBL_EPSILON * h->length * (4.0 * h->drag * widest + h->contact_factor * touched);

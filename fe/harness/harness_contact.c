@@ -58,23 +58,22 @@ static void find_part(const struct wb_harness *h, int e, double *low, double *hi
  * rounding, by the place; `c->bend` is the second. */
 static double look_at(const struct wb_harness *h, struct wb_harness_contact *c)
 {
-    const int e = c->element;
+    const int e = c->touch.element;
     const double z = c->at, half = half_length(h, e), round = rounding * h->elements[e].radius;
-    double at[3], along[3], bend[3], turned[3];
+    double along[3], bend[3];
     wb_rod_shape_at(z, 2.0 * half, c->N, c->dN);
     for (int k = 0; k < 3; k++) {
         const double p[NODES] = {node_of(h, e, 0)->position[k], node_of(h, e, 1)->position[k],
                                  node_of(h, e, 2)->position[k]};
-        at[k] = c->N[0] * p[0] + c->N[1] * p[1] + c->N[2] * p[2];
+        c->position[k] = c->N[0] * p[0] + c->N[1] * p[1] + c->N[2] * p[2];
         along[k] = half * (c->dN[0] * p[0] + c->dN[1] * p[1] + c->dN[2] * p[2]);
         bend[k] = p[0] - 2.0 * p[1] + p[2];
     }
-    memcpy(c->position, at, sizeof at);
-    c->gap = wb_obstacle_distance(&h->obstacles[c->obstacle], at, c->normal, c->curvature) -
+    c->gap = wb_obstacle_distance(&h->obstacles[c->touch.obstacle], c->position, c->normal,
+                                  c->curvature) -
              h->elements[e].radius + 0.5 * round * z * z;
-    wb_vec3_turn(c->curvature, along, turned);
-    memcpy(c->turned, turned, sizeof turned);
-    c->bend = wb_vec3_dot(along, turned) + wb_vec3_dot(c->normal, bend) + round;
+    wb_vec3_turn(c->curvature, along, c->turned);
+    c->bend = wb_vec3_dot(along, c->turned) + wb_vec3_dot(c->normal, bend) + round;
     return wb_vec3_dot(c->normal, along) + round * z;
 }
 
@@ -109,7 +108,7 @@ static bool is_near(const struct wb_harness *h, int e, int obstacle)
     return distance - 1.01 * h->elements[e].radius < 1.2 * farthest;
 }
 
-static double arc_length(const struct wb_harness *h, int e, double at)
+static double arc_length_of(const struct wb_harness *h, int e, double at)
 {
     return h->elements[e].begin + (1.0 + at) * half_length(h, e);
 }
@@ -124,9 +123,10 @@ static int nearest_to(const struct wb_harness *h, const struct wb_harness_touch 
     int nearest = -1;
     for (int i = h->first_contact[e > 0 ? e - 1 : 0]; i < end; i++) {
         const struct wb_harness_contact *const c = &h->contacts[i];
-        const double away = fabs(arc_length(h, e, t->at) - arc_length(h, c->element, c->at));
-        if (t->obstacle != c->obstacle || is_fixed != c->touch.is_fixed || c->is_beside ||
-            h->elements[e].branch != h->elements[c->element].branch || !(away < most))
+        const double away =
+            fabs(arc_length_of(h, e, t->at) - arc_length_of(h, c->touch.element, c->at));
+        if (t->obstacle != c->touch.obstacle || is_fixed != c->touch.is_fixed || c->is_beside ||
+            h->elements[e].branch != h->elements[c->touch.element].branch || !(away < most))
             continue;
         most = away;
         nearest = i;
@@ -149,7 +149,8 @@ static void pass_over_joints(struct wb_harness *h)
         struct wb_harness_contact *const c = &h->contacts[i];
         if (!c->touch.is_fixed)
             continue;
-        const int minimum = nearest_to(h, &c->touch, false, beside * half_length(h, c->element));
+        const int minimum =
+            nearest_to(h, &c->touch, false, beside * half_length(h, c->touch.element));
         c->is_beside = minimum >= 0 && h->contacts[minimum].gap < c->gap;
     }
 }
@@ -164,7 +165,7 @@ static void inherit(struct wb_harness *h)
         struct wb_harness_touch *const to = &h->contacts[i].touch;
         if (t->multiplier >= to->multiplier) {
             memcpy(to->normal, t->normal, sizeof to->normal);
-            to->at = t->element == h->contacts[i].element ? t->at : h->contacts[i].at;
+            to->at = t->element == h->contacts[i].touch.element ? t->at : h->contacts[i].at;
         }
         to->multiplier += t->multiplier;
         to->expected += t->expected;
@@ -182,13 +183,14 @@ static void inherit(struct wb_harness *h)
 /* Motion of the wire along the surface since the last commit. */
 static void find_slip(const struct wb_harness *h, struct wb_harness_contact *c)
 {
-    const double most = wb_harness_contact_presliding(h) / fmin(h->contact_factor, 1.0);
+    const double most = wb_harness_presliding(h) / fmin(h->contact_factor, 1.0);
     double *const slip = c->touch.slip;
     double dN[NODES];
-    wb_rod_shape_at(c->touch.at, 2.0 * half_length(h, c->element), c->rubbing, dN);
+    wb_rod_shape_at(c->touch.at, 2.0 * half_length(h, c->touch.element), c->rubbing, dN);
     for (int n = 0; n < NODES; n++) {
-        const double *const was = h->committed_nodes[wb_harness_node_of(h, c->element, n)].position;
-        const double *const is = node_of(h, c->element, n)->position;
+        const double *const was =
+            h->committed_nodes[wb_harness_node_of(h, c->touch.element, n)].position;
+        const double *const is = node_of(h, c->touch.element, n)->position;
         for (int k = 0; k < 3; k++)
             slip[k] += c->rubbing[n] * (is[k] - was[k]) / most;
     }
@@ -208,19 +210,22 @@ static void add_place(struct wb_harness *h, const struct wb_harness_contact *pla
         return;
     struct wb_harness_contact *const c = &h->contacts[h->n_contacts++];
     *c = *place;
-    c->touch.element = c->element;
-    c->touch.obstacle = c->obstacle;
     c->touch.at = c->at;
     c->touch.missing = (double)NAN;
     memcpy(c->touch.normal, c->normal, sizeof c->normal);
 }
 
+static struct wb_harness_contact place_on(int e, int obstacle, double at)
+{
+    return (struct wb_harness_contact){.touch = {.element = e, .obstacle = obstacle}, .at = at};
+}
+
 static void add_fixed(struct wb_harness *h, int e, int obstacle, double at)
 {
-    struct wb_harness_contact c = {.element = e, .obstacle = obstacle, .at = at};
-    c.touch.is_fixed = true;
-    (void)look_at(h, &c);
-    add_place(h, &c);
+    struct wb_harness_contact place = place_on(e, obstacle, at);
+    place.touch.is_fixed = true;
+    (void)look_at(h, &place);
+    add_place(h, &place);
 }
 
 /* The minima of the gap inside of an element, and its far end. */
@@ -232,8 +237,8 @@ static void look_at_element(struct wb_harness *h, int e, int obstacle)
         return;
     const double step = (high - low) / (SAMPLES - 1);
     for (int i = 0; i < SAMPLES; i++) {
-        struct wb_harness_contact place = {
-            .element = e, .obstacle = obstacle, .at = i < SAMPLES - 1 ? low + i * step : high};
+        struct wb_harness_contact place =
+            place_on(e, obstacle, i < SAMPLES - 1 ? low + i * step : high);
         const double slope = look_at(h, &place);
         if (slope_before < 0.0 && slope > 0.0) {
             refine(h, &place, place.at - step, place.at);
@@ -283,7 +288,7 @@ void wb_harness_contact_find(struct wb_harness *h)
 
 static double friction_of(const struct wb_harness *h, const struct wb_harness_contact *c)
 {
-    return h->obstacles[c->obstacle].friction * c->touch.pressed;
+    return h->obstacles[c->touch.obstacle].friction * c->touch.pressed;
 }
 
 /* How far a place is from its obstacle; the angle by which the normal differs from that known
@@ -293,10 +298,10 @@ static double distance_of(const struct wb_harness *h, const struct wb_harness_co
     double way = fabs(c->gap);
     if (friction_of(h, c) > 0.0) {
         const double turn = wb_vec3_distance(c->normal, c->touch.normal);
-        const double moved = fabs(c->at - c->touch.at) * half_length(h, c->element);
+        const double moved = fabs(c->at - c->touch.at) * half_length(h, c->touch.element);
         const double missing = fabs(c->force - c->touch.pressed);
         way = fmax(way, fmax(turn_arm * h->length * turn, along_part * moved));
-        way = fmax(way, missing / h->elements[c->element].contact_stiffness);
+        way = fmax(way, missing / h->elements[c->touch.element].contact_stiffness);
     }
     return way;
 }
@@ -307,7 +312,7 @@ void wb_harness_contact_add_forces(struct wb_harness *h, struct wb_harness_balan
     for (int i = 0; i < h->n_contacts; i++) {
         const struct wb_harness_contact *const c = &h->contacts[i];
         for (int n = 0; n < NODES; n++) {
-            double *const to = h->residual[wb_harness_node_of(h, c->element, n)];
+            double *const to = h->residual[wb_harness_node_of(h, c->touch.element, n)];
             for (int k = 0; k < 3; k++)
                 to[k] -= c->N[n] * c->force * c->normal[k] -
                          c->rubbing[n] * friction_of(h, c) * c->touch.slip[k];
@@ -320,7 +325,7 @@ void wb_harness_contact_add_forces(struct wb_harness *h, struct wb_harness_balan
         balance->farthest_contact = (double)NAN;
 }
 
-/* Adds factor times N_a M N_b to the stiffness between the positions of nodes a and b. */
+/* Adds N_a M N_b to the stiffness between the positions of nodes a and b. */
 static void add_block(struct wb_rod_element_stiffness *stiffness, const double N[NODES],
                       const double M[9])
 {
@@ -390,10 +395,10 @@ void wb_harness_contact_advance(struct wb_harness *h)
         double way = 0.0;
         for (int n = 0; n < NODES; n++)
             way += c->N[n] *
-                   wb_vec3_dot(c->normal, h->increment[wb_harness_node_of(h, c->element, n)]);
+                   wb_vec3_dot(c->normal, h->increment[wb_harness_node_of(h, c->touch.element, n)]);
         h->now.touch[i] = c->touch;
         h->now.touch[i].expected =
-            c->force > 0.0 ? fmax(c->force - stiffness_of(h, c->element) * way, 0.0) : 0.0;
+            c->force > 0.0 ? fmax(c->force - stiffness_of(h, c->touch.element) * way, 0.0) : 0.0;
     }
 }
 
@@ -528,29 +533,22 @@ bool wb_harness_passes_through(const struct wb_harness *h)
 
 /* --- results --- */
 
-static void add_force(double *sum, const double *at, double factor, const double *direction)
-{
-    double force[3], moment[3];
-    for (int k = 0; k < 3; k++)
-        force[k] = factor * direction[k];
-    wb_vec3_cross(at, force, moment);
-    for (int k = 0; k < 3; k++) {
-        sum[k] += force[k];
-        sum[3 + k] += moment[k];
-    }
-}
-
 void wb_harness_obstacle_force(const struct wb_harness *h, int obstacle, double force[6])
 {
     memset(force, 0, U * sizeof *force);
     for (int i = 0; i < h->n_contacts; i++) {
         const struct wb_harness_contact *const c = &h->contacts[i];
-        if (c->obstacle != obstacle)
+        if (c->touch.obstacle != obstacle)
             continue;
-        add_force(force, c->position, c->force, c->normal);
-        for (int n = 0; n < NODES; n++)
-            add_force(force, node_of(h, c->element, n)->position,
-                      -c->rubbing[n] * friction_of(h, c), c->touch.slip);
+        double part[3];
+        for (int k = 0; k < 3; k++)
+            part[k] = c->force * c->normal[k];
+        wb_harness_add_force(force, part, c->position);
+        for (int n = 0; n < NODES; n++) {
+            for (int k = 0; k < 3; k++)
+                part[k] = -c->rubbing[n] * friction_of(h, c) * c->touch.slip[k];
+            wb_harness_add_force(force, part, node_of(h, c->touch.element, n)->position);
+        }
     }
 }
 
@@ -561,17 +559,17 @@ double wb_harness_depth(const struct wb_harness *h, int *obstacle, int *branch, 
         const int e = i / SAMPLES / h->n_obstacles;
         double low, high;
         find_part(h, e, &low, &high);
-        struct wb_harness_contact c = {.element = e, .obstacle = i / SAMPLES % h->n_obstacles};
-        c.at = low + (high - low) * (i % SAMPLES) / (SAMPLES - 1);
         if (!(low < high))
             continue;
+        struct wb_harness_contact c = place_on(e, i / SAMPLES % h->n_obstacles,
+                                               low + (high - low) * (i % SAMPLES) / (SAMPLES - 1));
         (void)look_at(h, &c);
         if (-c.gap <= most)
             continue;
         most = -c.gap;
-        *obstacle = c.obstacle;
+        *obstacle = c.touch.obstacle;
         *branch = h->elements[e].branch;
-        *arc_length = h->elements[e].begin + (1.0 + c.at) * half_length(h, e);
+        *arc_length = arc_length_of(h, e, c.at);
     }
     return most;
 }

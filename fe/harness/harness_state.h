@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "base/vec3.h"
 #include "fe/harness/harness.h"
 #include "fe/linear/larger.h"
 
@@ -100,9 +101,8 @@ struct wb_harness_touches {
 
 /* The same with what was evaluated of it. */
 struct wb_harness_contact {
-    struct wb_harness_touch touch;
-    int element, obstacle;
-    double at, position[3];
+    struct wb_harness_touch touch;              /* `at` is where it was known */
+    double at, position[3];                     /* where it is */
     double N[NODES], dN[NODES], rubbing[NODES]; /* shapes at the place, and where friction acts */
     double gap, normal[3], curvature[9];        /* of the surface: gradient of the normal, 1/m */
     double turned[3], bend;                     /* of the gap by the place: see harness_contact.c */
@@ -156,7 +156,7 @@ struct wb_harness {
     struct wb_harness_equation *equations;
     double (*vector)[U]; /* (n_nodes) */
     double *system;
-    /* With obstacles: the places that touch, ascending. */
+    /* With obstacles: the places that touch, in the order of the elements. */
     struct wb_obstacle *obstacles; /* (n_obstacles) */
     struct wb_harness_touches now, committed_touches;
     double contact_factor;               /* on the stiffness of places that touch */
@@ -168,6 +168,17 @@ struct wb_harness {
     bool is_odd, rubs;       /* the number of negative eigenvalues is odd; friction acts */
     struct wb_memory memory; /* of all arrays */
 };
+
+/* Adds a force at a place, and its moment about the origin, to a sum of both. */
+static inline void wb_harness_add_force(double sum[6], const double force[3], const double at[3])
+{
+    double moment[3];
+    wb_vec3_cross(at, force, moment);
+    for (int k = 0; k < 3; k++) {
+        sum[k] += force[k];
+        sum[3 + k] += moment[k];
+    }
+}
 
 /* How a joint is held: the axes of the bases of its position and of its spin (rows), which of its
  * six components there are held, and their way to the target. */
@@ -201,13 +212,7 @@ static inline bool wb_harness_is_held(const struct wb_harness *h, int node)
            h->joints[node].hold != WB_HARNESS_SLIDE;
 }
 
-/* Way along an obstacle over which friction grows to its limit, m. */
-static inline double wb_harness_contact_presliding(const struct wb_harness *h)
-{
-    return 1e-6 * h->length;
-}
-
-/* Way through a clip over which its friction grows to its limit, m. */
+/* Way through a clip, or along an obstacle, over which friction grows to its limit, m. */
 static inline double wb_harness_presliding(const struct wb_harness *h)
 {
     return 1e-6 * h->length;
