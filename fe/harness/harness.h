@@ -13,9 +13,9 @@
  * from the ends of the branches to the root in blocks of 6 x 6, in a time proportional to the
  * number of joints; the sliding clips border it.
  *
- * The state has a trial and a committed part. A Newton iteration calls evaluate, solve and advance.
- * After convergence the trial state is committed; otherwise it is reverted. Nothing is allocated
- * after creation.
+ * The state has a trial and a committed part. After an evaluation, a Newton iteration calls solve
+ * and advance. After convergence the trial state is committed; otherwise it is reverted. Nothing is
+ * allocated after creation.
  */
 #ifndef WB_FE_HARNESS_HARNESS_H
 #define WB_FE_HARNESS_HARNESS_H
@@ -155,9 +155,11 @@ void wb_harness_solve(struct wb_harness *harness);
  * is odd: where a path loses its stability. */
 int wb_harness_negative(const struct wb_harness *harness);
 
-/* Moves the trial state by the increment. If a joint would rotate by more than `most_rotation`
- * (rad), the whole increment is scaled down; returns the scale. */
-double wb_harness_advance(struct wb_harness *harness, double most_rotation);
+/* Moves the trial state by the increment, and evaluates it under the weight of the last evaluation.
+ * If a joint would rotate by more than `most_rotation` (rad), the whole increment is scaled down;
+ * returns the scale. */
+double wb_harness_advance(struct wb_harness *harness, double most_rotation,
+                          struct wb_harness_balance *balance);
 
 /* Sets the trial state to the committed state, or extrapolates it along the line through the last
  * two committed states, `ratio` times their distance beyond the last. */

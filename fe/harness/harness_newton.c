@@ -499,22 +499,21 @@ static void move_from_origin(struct wb_harness *h, double scale)
 
 /* Moves by the part of the increment at which the work of the unbalanced forces is small: beyond
  * it, places that touched or stuck on the way push back. */
-static void search(struct wb_harness *h, double scale)
+static void search(struct wb_harness *h, double scale, struct wb_harness_balance *balance)
 {
-    struct wb_harness_balance balance;
     double low = 0.0, high = scale, work_low = work(h);
     const double enough = search_part * fabs(work_low);
     keep_origin(h);
     move(h, scale);
+    wb_harness_evaluate(h, h->weight, balance);
     if (!(work_low < 0.0))
         return;
-    wb_harness_evaluate(h, h->weight, &balance);
     double work_high = work(h), here = fmax(work_high, 0.0);
     for (int i = 0; i < max_searches && fabs(here) > enough; i++) {
         const double part = fmin(fmax(work_low / (work_low - work_high), 0.05), 0.95);
         const double at = low + part * (high - low);
         move_from_origin(h, at);
-        wb_harness_evaluate(h, h->weight, &balance);
+        wb_harness_evaluate(h, h->weight, balance);
         here = work(h);
         /* The other end counts half, so that it moves, too. */
         if (here < 0.0) {
@@ -529,7 +528,8 @@ static void search(struct wb_harness *h, double scale)
     }
 }
 
-double wb_harness_advance(struct wb_harness *h, double most_rotation)
+double wb_harness_advance(struct wb_harness *h, double most_rotation,
+                          struct wb_harness_balance *balance)
 {
     double most = 0.0;
     for (int j = 0; j < h->n_joints; j++)
@@ -538,9 +538,10 @@ double wb_harness_advance(struct wb_harness *h, double most_rotation)
         fmin(most > most_rotation ? most_rotation / most : 1.0, scale_for_clips(h));
     if (h->n_obstacles == 0) {
         move(h, scale);
+        wb_harness_evaluate(h, h->weight, balance);
     } else {
         wb_harness_contact_advance(h);
-        search(h, scale);
+        search(h, scale, balance);
     }
     return scale;
 }

@@ -114,9 +114,9 @@ static enum outcome iterate(struct wb_harness_solver *s, double weight, bool pas
     const double gap = passing ? passing_contact : contact_tolerance;
     struct wb_harness *const h = s->harness;
     int scaled_down = 0, changes = 0;
+    struct wb_harness_balance balance;
+    wb_harness_evaluate(h, weight, &balance);
     for (int i = 0;; i++) {
-        struct wb_harness_balance balance;
-        wb_harness_evaluate(h, weight, &balance);
         const double tolerance = fmax(part * balance.largest_force, wb_harness_noise(h));
         result->residual = balance.largest_force > 0.0
                                ? balance.largest_residual / balance.largest_force
@@ -160,7 +160,8 @@ static enum outcome iterate(struct wb_harness_solver *s, double weight, bool pas
         if (i == max_iterations)
             return ITERATIONS;
         result->iterations++;
-        if (wb_harness_advance(h, max_iteration_rotation) < 1.0 && ++scaled_down > max_scaled_down)
+        if (wb_harness_advance(h, max_iteration_rotation, &balance) < 1.0 &&
+            ++scaled_down > max_scaled_down)
             return ITERATIONS;
     }
 }

@@ -79,14 +79,14 @@ static void holds_a_helix_with_loves_wrench(void **unused)
  * is found. */
 static int negative_at_rest(struct wb_harness *h)
 {
+    struct wb_harness_balance balance;
+    wb_harness_evaluate(h, 0.0, &balance);
     for (int i = 0; i < 30; i++) {
-        struct wb_harness_balance balance;
-        wb_harness_evaluate(h, 0.0, &balance);
         wb_harness_solve(h);
         if (balance.largest_residual <= 1e-9 * balance.largest_force + 1e-13 &&
             balance.farthest_hold < 1e-10 && balance.farthest_turn < 1e-10)
             return wb_harness_negative(h);
-        (void)wb_harness_advance(h, 0.5);
+        (void)wb_harness_advance(h, 0.5, &balance);
     }
     return 1;
 }

@@ -220,14 +220,14 @@ static int negative_of_a_pushed_rod(double force)
     const double load[6] = {-force};
     wb_harness_set_load(t.harness, clip, load);
     int negative = 1;
+    struct wb_harness_balance balance;
+    wb_harness_evaluate(t.harness, 0.0, &balance);
     for (int i = 0; i < 30; i++) {
-        struct wb_harness_balance balance;
-        wb_harness_evaluate(t.harness, 0.0, &balance);
         wb_harness_solve(t.harness);
         negative = wb_harness_negative(t.harness);
         if (balance.largest_residual <= 1e-9 * balance.largest_force + 1e-13)
             break;
-        (void)wb_harness_advance(t.harness, 0.5);
+        (void)wb_harness_advance(t.harness, 0.5, &balance);
     }
     test_harness_release(&t);
     return negative;
