@@ -206,7 +206,8 @@ static void find_slip(const struct wb_harness *h, struct wb_harness_contact *c)
 
 static void add_place(struct wb_harness *h, const struct wb_harness_contact *place)
 {
-    if (h->n_contacts == h->most_contacts)
+    h->is_crowded |= h->n_contacts == h->most_contacts;
+    if (h->is_crowded)
         return;
     struct wb_harness_contact *const c = &h->contacts[h->n_contacts++];
     *c = *place;
@@ -254,6 +255,7 @@ static void look_at_element(struct wb_harness *h, int e, int obstacle)
 void wb_harness_contact_find(struct wb_harness *h)
 {
     h->n_contacts = 0;
+    h->is_crowded = false;
     for (int e = 0; e < h->n_elements && h->n_obstacles > 0; e++) {
         h->first_contact[e] = h->n_contacts;
         for (int o = 0; o < h->n_obstacles; o++) {
@@ -321,7 +323,7 @@ void wb_harness_contact_add_forces(struct wb_harness *h, struct wb_harness_balan
         balance->largest_contact =
             wb_larger(balance->largest_contact, fmax(c->force, c->touch.multiplier));
     }
-    if (h->n_contacts > 0 && h->n_contacts == h->most_contacts)
+    if (h->is_crowded)
         balance->farthest_contact = (double)NAN;
 }
 

@@ -164,6 +164,7 @@ struct wb_harness {
     double relaxation;                   /* of the forces that friction is proportional to */
     struct wb_harness_contact *contacts; /* (n_contacts of most_contacts) of the last evaluation */
     int *first_contact;                  /* (n_elements + 1) */
+    bool is_crowded;                     /* more places are near obstacles than most_contacts */
     int negative;
     bool is_odd, rubs;       /* the number of negative eigenvalues is odd; friction acts */
     struct wb_memory memory; /* of all arrays */

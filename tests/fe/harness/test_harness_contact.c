@@ -338,6 +338,27 @@ static void wire_that_springs_back_stops_at_a_post(void **unused)
     test_harness_release(&t);
 }
 
+/* Of more places near obstacles than there is room for, none is left out in silence. */
+static void too_many_places_are_not_an_equilibrium(void **unused)
+{
+    (void)unused;
+    struct wb_obstacle floors[20];
+    const double up[3] = {0.0, -0.5 * M_PI, 0.0};
+    for (int i = 0; i < 20; i++) {
+        floors[i] = (struct wb_obstacle){.kind = WB_OBSTACLE_PLANE,
+                                         .place = {0.0, 0.0, -2e-3 - 1e-5 * (20 - i)}};
+        wb_rod_element_exponential(up, floors[i].rotation);
+    }
+    const struct wb_harness_move hang = {.weight = 1.0};
+    for (int n = 2; n <= 20; n += 18) {
+        struct test_harness t = rod(test_elastic_section(1e-3, 0.0), 0.3, 0.05, 10, floors, n);
+        struct wb_harness_result result;
+        wb_harness_solver_move(t.solver, &hang, &result);
+        assert_int_equal(result.end, n == 2 ? WB_HARNESS_CONVERGED : WB_HARNESS_NOT_CONVERGED);
+        test_harness_release(&t);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -347,6 +368,7 @@ int main(void)
         cmocka_unit_test(forces_turn_with_the_scene),
         cmocka_unit_test(smooth_obstacle_takes_no_work),
         cmocka_unit_test(wire_rests_in_a_corner),
+        cmocka_unit_test(too_many_places_are_not_an_equilibrium),
         cmocka_unit_test(wire_that_springs_back_stops_at_a_post),
         cmocka_unit_test(friction_on_a_cylinder_is_that_of_euler_and_eytelwein),
     };
