@@ -15,7 +15,7 @@
 #define WB_LOG_DOMAIN "harness"
 
 static const char *const holds[] = {"point", "axis", "all", "slide", NULL};
-static const char *const obstacle_shapes[] = {"plane", "cylinder", "box", NULL};
+const char *const wb_harness_file_shapes[] = {"plane", "cylinder", "box", NULL};
 static const char *const steps[] = {"hang", "mount", "move", "release", "take_off", NULL};
 static const char parallel[] = "it is parallel to `up`, which must point across";
 
@@ -437,6 +437,11 @@ static enum wb_status read_clip(void *context, const struct wb_config_node *map)
 
 /* --- obstacles --- */
 
+int wb_harness_file_n_holders(const struct wb_harness_plan *plan)
+{
+    return plan->n_items + plan->n_obstacles;
+}
+
 const char *wb_harness_file_holder(const struct wb_harness_plan *plan, int index)
 {
     return index < plan->n_items ? plan->items[index].name
@@ -445,7 +450,7 @@ const char *wb_harness_file_holder(const struct wb_harness_plan *plan, int index
 
 static int find_holder(const struct wb_harness_plan *plan, const char *name)
 {
-    for (int i = 0; i < plan->n_items + plan->n_obstacles; i++) {
+    for (int i = 0; i < wb_harness_file_n_holders(plan); i++) {
         if (strcmp(wb_harness_file_holder(plan, i), name) == 0)
             return i;
     }
@@ -460,11 +465,12 @@ static enum wb_status check_sizes(const struct wb_config_node *map, const struct
     static const int allowed[] = {0x0, 0xb, 0xc};
     for (int i = 0; i < 4; i++) {
         if (wb_config_find(map, keys[i]) && !(allowed[body->kind] >> i & 1))
-            return wb_config_refuse(map, keys[i], "a %s has none", obstacle_shapes[body->kind]);
+            return wb_config_refuse(map, keys[i], "a %s has none",
+                                    wb_harness_file_shapes[body->kind]);
     }
     if (needed[body->kind] && !wb_config_find(map, needed[body->kind]))
         return wb_config_refuse(map, needed[body->kind], "missing: a %s needs it",
-                                obstacle_shapes[body->kind]);
+                                wb_harness_file_shapes[body->kind]);
     struct wb_reason why = {""};
     if (wb_obstacle_check(body, &why) != WB_OK)
         return wb_config_refuse(map, "edge_radius_mm", "%s", why.text);
@@ -482,7 +488,7 @@ static enum wb_status read_obstacle(void *context, const struct wb_config_node *
     int shape;
     const struct wb_config_key keys[] = {
         WB_CONFIG_TEXT("name", obstacle.name),
-        WB_CONFIG_CHOICE("shape", &shape, obstacle_shapes),
+        WB_CONFIG_CHOICE("shape", &shape, wb_harness_file_shapes),
         WB_CONFIG_NODE("at_mm", &at),
         WB_CONFIG_OPTIONAL_NODE("direction", &direction_node),
         WB_CONFIG_OPTIONAL_NODE("up", &up_node),
@@ -501,7 +507,8 @@ static enum wb_status read_obstacle(void *context, const struct wb_config_node *
     if (direction_node)
         WB_TRY(read_direction(map, "direction", direction_node, direction));
     else if (body->kind != WB_OBSTACLE_BOX)
-        return wb_config_refuse(map, "direction", "missing: a %s needs it", obstacle_shapes[shape]);
+        return wb_config_refuse(map, "direction", "missing: a %s needs it",
+                                wb_harness_file_shapes[shape]);
     if (size) {
         const struct wb_config_key row = WB_CONFIG_NUMBER("size_mm", body->size, WB_MM, 1e-3, 1e6);
         int n;

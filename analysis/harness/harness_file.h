@@ -105,6 +105,9 @@ struct wb_harness_plan_obstacle {
     struct wb_obstacle body;
 };
 
+/* The words of `shape`, by enum wb_obstacle_kind; NULL at the end. */
+extern const char *const wb_harness_file_shapes[];
+
 enum wb_harness_step_kind {
     WB_HARNESS_HANG,
     WB_HARNESS_MOUNT,
@@ -167,7 +170,9 @@ void wb_harness_file_begin(const struct wb_harness_plan *plan,
 void wb_harness_file_apply_step(const struct wb_harness_step *step,
                                 struct wb_harness_assembly *assembly);
 
-/* Name of what holds the wires: an item, or after them an obstacle. */
+/* What holds the wires: the items, and after them the obstacles. Their number, and the name of one.
+ */
+int wb_harness_file_n_holders(const struct wb_harness_plan *plan);
 const char *wb_harness_file_holder(const struct wb_harness_plan *plan, int index);
 
 /* Index of an item; -1: no such name. */

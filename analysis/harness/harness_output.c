@@ -184,7 +184,7 @@ void wb_harness_output_put_step(struct wb_json *object, const struct wb_harness_
     WB_PUT(object, &wb_harness_output_step_keys, struct wb_harness_step_result, step);
     put_snaps(object, plan, step);
     struct wb_json *const forces = wb_json_set_array(object, "forces");
-    for (int i = 0; i < plan->n_items + plan->n_obstacles; i++) {
+    for (int i = 0; i < wb_harness_file_n_holders(plan); i++) {
         const struct wb_harness_force *const force = &step->forces[i];
         if (!force->is_mounted)
             continue;
@@ -329,7 +329,7 @@ static enum wb_status write_forces(const struct wb_harness_result_set *set, cons
     for (int i = 1; i < set->n_shapes; i++) {
         char step[WB_NUMBER_TEXT];
         (void)wb_number_format(set->shapes[i].time, step);
-        for (int k = 0; k < set->plan->n_items + set->plan->n_obstacles; k++) {
+        for (int k = 0; k < wb_harness_file_n_holders(set->plan); k++) {
             const struct wb_harness_force *const f = &set->shapes[i].forces[k];
             const struct column columns[] = {
                 {f->size, 0},        {f->force[0], 0},       {f->force[1], 0},  {f->force[2], 0},
@@ -419,7 +419,7 @@ void wb_harness_output_append_table(struct wb_text *text, const struct wb_harnes
             wb_text_append(text, "  least radius %.3g mm (%s at %.4g mm)", b->least_radius / WB_MM,
                            plan->branches[tightest].name, b->at / WB_MM);
         wb_text_append(text, "\n");
-        for (int k = 0; k < plan->n_items + plan->n_obstacles; k++) {
+        for (int k = 0; k < wb_harness_file_n_holders(plan); k++) {
             if (step->forces[k].is_mounted)
                 append_force(text, plan, k, &step->forces[k]);
         }

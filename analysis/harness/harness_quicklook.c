@@ -115,9 +115,6 @@ static void append_items(const struct wb_harness_plan *plan, struct wb_text *tex
     }
 }
 
-static const char *const obstacle_kinds[] = {
-    [WB_OBSTACLE_PLANE] = "plane", [WB_OBSTACLE_CYLINDER] = "cylinder", [WB_OBSTACLE_BOX] = "box"};
-
 static void append_obstacles(const struct wb_harness_plan *plan, struct wb_text *text)
 {
     if (plan->n_obstacles > 0)
@@ -125,8 +122,9 @@ static void append_obstacles(const struct wb_harness_plan *plan, struct wb_text 
     for (int i = 0; i < plan->n_obstacles; i++) {
         const struct wb_obstacle *const body = &plan->obstacles[i].body;
         wb_text_append(text, "  %-12s %s at (%.4g, %.4g, %.4g) mm, friction %.3g\n",
-                       plan->obstacles[i].name, obstacle_kinds[body->kind], body->place[0] / WB_MM,
-                       body->place[1] / WB_MM, body->place[2] / WB_MM, body->friction);
+                       plan->obstacles[i].name, wb_harness_file_shapes[body->kind],
+                       body->place[0] / WB_MM, body->place[1] / WB_MM, body->place[2] / WB_MM,
+                       body->friction);
     }
 }
 
@@ -239,7 +237,7 @@ void wb_harness_quicklook_describe(const struct wb_harness_result_set *set, stru
     for (int i = 0; i < plan->n_obstacles; i++) {
         struct wb_json *const item = wb_json_append_object(obstacles);
         wb_json_set_text(item, "name", plan->obstacles[i].name);
-        wb_json_set_text(item, "kind", obstacle_kinds[plan->obstacles[i].body.kind]);
+        wb_json_set_text(item, "kind", wb_harness_file_shapes[plan->obstacles[i].body.kind]);
         put_point(item, "at_mm", plan->obstacles[i].body.place);
     }
     struct wb_json *const steps = wb_json_set_array(object, "steps");

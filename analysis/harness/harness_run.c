@@ -109,11 +109,6 @@ static int count_sliding(const struct wb_harness_plan *plan)
     return n;
 }
 
-static size_t count_holders(const struct wb_harness_plan *plan)
-{
-    return (size_t)(plan->n_items + plan->n_obstacles);
-}
-
 /* The obstacles must not be where the wires are at first. */
 static enum wb_status check_obstacles(const struct wb_harness_run *run)
 {
@@ -461,7 +456,8 @@ void wb_harness_run_take_memory(const struct wb_harness_run *run, struct wb_memo
                                 struct wb_harness_step_result *result)
 {
     const size_t branches = (size_t)run->plan->n_branches;
-    result->forces = wb_memory_take(memory, count_holders(run->plan), sizeof *result->forces);
+    result->forces = wb_memory_take(memory, (size_t)wb_harness_file_n_holders(run->plan),
+                                    sizeof *result->forces);
     result->branches = wb_memory_take(memory, branches, sizeof *result->branches);
     result->places = wb_memory_take(memory, (size_t)run->n_places, sizeof *result->places);
 }
@@ -469,7 +465,8 @@ void wb_harness_run_take_memory(const struct wb_harness_run *run, struct wb_memo
 static void begin_result(struct wb_harness_run *run, struct wb_harness_step_result *result)
 {
     run->result = result;
-    memset(result->forces, 0, count_holders(run->plan) * sizeof *result->forces);
+    memset(result->forces, 0,
+           (size_t)wb_harness_file_n_holders(run->plan) * sizeof *result->forces);
     for (int i = 0; i < run->plan->n_branches; i++)
         result->branches[i] = (struct wb_harness_branch_result){
             .least_radius = (double)INFINITY,
@@ -620,7 +617,7 @@ static void compute(struct wb_harness_result_set *set, struct wb_harness_run *ru
     add_shape(set, -1, 1.0, set->natural, natural.forces);
     *frames = (struct wb_harness_frames){.n_wanted = set->settings.frames,
                                          .n_places = set->n_places,
-                                         .n_forces = (int)count_holders(plan),
+                                         .n_forces = wb_harness_file_n_holders(plan),
                                          .memory = set->memory};
     wb_harness_frames_create(frames);
     set->converged = true;
@@ -684,7 +681,7 @@ enum wb_status wb_harness_run_compute(struct wb_harness_result_set *set,
     softer.frames = 0;
     const enum wb_status status = compute_once(&soft, plan, &softer, progress, context);
     for (int i = 0; status == WB_OK && i < soft.n_steps && soft.converged; i++) {
-        for (int k = 0; k < plan->n_items + plan->n_obstacles; k++)
+        for (int k = 0; k < wb_harness_file_n_holders(plan); k++)
             set->results[i].forces[k].soft_force = soft.results[i].forces[k].size;
     }
     wb_harness_run_release(&soft);

@@ -94,7 +94,7 @@ static void copy_state(const struct wb_harness_session *s, struct wb_harness_ses
     to->result.branches = own.branches;
     to->result.places = own.places;
     memcpy(own.forces, from->result.forces,
-           (size_t)(s->plan->n_items + s->plan->n_obstacles) * sizeof *own.forces);
+           (size_t)wb_harness_file_n_holders(s->plan) * sizeof *own.forces);
     memcpy(own.branches, from->result.branches, (size_t)s->plan->n_branches * sizeof *own.branches);
     memcpy(own.places, from->result.places,
            (size_t)wb_harness_run_n_places(s->run) * sizeof *own.places);

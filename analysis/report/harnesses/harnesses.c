@@ -95,7 +95,7 @@ static void drop_round_off(struct wb_harness_result_set *set)
     double force = 0.0, moment = 0.0, energy = 0.0;
     for (int i = 0; i < set->n_steps; i++) {
         energy = fmax(energy, fmax(set->results[i].elastic, set->results[i].plastic));
-        for (int k = 0; k < set->plan->n_items + set->plan->n_obstacles; k++) {
+        for (int k = 0; k < wb_harness_file_n_holders(set->plan); k++) {
             force = fmax(force, set->results[i].forces[k].largest);
             moment = fmax(moment, set->results[i].forces[k].largest_moment);
         }
@@ -103,7 +103,7 @@ static void drop_round_off(struct wb_harness_result_set *set)
     for (int i = 0; i < set->n_steps; i++) {
         chop(&set->results[i].elastic, round_off * energy);
         chop(&set->results[i].plastic, round_off * energy);
-        for (int k = 0; k < set->plan->n_items + set->plan->n_obstacles; k++)
+        for (int k = 0; k < wb_harness_file_n_holders(set->plan); k++)
             chop_force(&set->results[i].forces[k], round_off * force, round_off * moment);
         for (int k = 0; k < set->plan->n_branches; k++)
             chop_branch(&set->results[i].branches[k]);

@@ -182,7 +182,7 @@ static void put_items(struct wb_document *document, const struct wb_harnesses_re
         "steps with elastic wires. Forces that depend on GJ differ by more than 10 % with a fifth "
         "of a torsional stiffness that is not measured.",
         WB_COUNT(columns), columns);
-    for (int i = 0; i < set->plan->n_items + set->plan->n_obstacles; i++) {
+    for (int i = 0; i < wb_harness_file_n_holders(set->plan); i++) {
         const struct wb_harness_item *const item = limits_of(set->plan, i);
         const double elastic = wb_harnesses_elastic_largest(results, i);
         struct wb_harness_extreme force, moment;
@@ -293,7 +293,7 @@ static void put_forces(struct wb_document *document, const struct wb_harnesses_r
         "Forces and moments on the wire at the end of the step, in the frame of the section there; "
         "the largest ones during the step; and the force with elastic wires.",
         WB_COUNT(columns), columns);
-    for (int i = 0; i < plan->n_items + plan->n_obstacles; i++) {
+    for (int i = 0; i < wb_harness_file_n_holders(plan); i++) {
         const struct wb_harness_item *const item = limits_of(plan, i);
         const struct wb_harness_force *const f = &results->set.results[step].forces[i];
         struct wb_text parts = {0};
